@@ -8,6 +8,7 @@ use crate::control::{Chart, quantile, share_below};
 pub use crate::filter::Cause;
 use crate::filter::{DATUM, Estimate, Filtered, LEVEL, LEVEL_SLOPE, SIZE, SIZE_SLOPE, Step, follow};
 use crate::series::{Event, Part, Place, Series, any_is_pushed};
+use truepath_ground::length::Unit;
 
 /// What is asked of a batch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -249,8 +250,8 @@ impl Batch {
     }
 
     /// How the batch stands, in a few sentences: what moves, and for how long it goes well.
-    pub fn words(&self) -> Vec<String> {
-        let mut said: Vec<String> = self.alarms.iter().map(Alarm::words).collect();
+    pub fn words(&self, unit: Unit) -> Vec<String> {
+        let mut said: Vec<String> = self.alarms.iter().map(|alarm| alarm.words(unit)).collect();
         let Some(now) = self.states.last() else { return said };
         let (since, pushed) = (self.parts[0], self.is_pushed());
         let Known { value, sigma } = now.force_level;
@@ -268,7 +269,7 @@ impl Batch {
         }
         let Known { value, sigma } = now.radius_lost_mm;
         if value.abs() > 2.0 * sigma && value.abs() > 0.001 {
-            said.push(format!("{} than at part {since}", smaller(value, sigma, pushed)));
+            said.push(format!("{} than at part {since}", smaller(value, sigma, pushed, unit)));
         }
         let said_already =
             self.alarms.iter().any(|a| matches!(a, Alarm::OutOfTolerance { .. } | Alarm::Leaving { .. }));
@@ -284,10 +285,15 @@ impl Batch {
 
 impl Alarm {
     /// In words.
-    pub fn words(&self) -> String {
+    pub fn words(&self, unit: Unit) -> String {
+        let small = unit.small_name();
         match self {
             Self::OutOfTolerance { part, place, error_mm } => {
-                format!("part {part} is out of tolerance: {:+.1} µm at {}", 1e3 * error_mm, place.words())
+                format!(
+                    "part {part} is out of tolerance: {:+.1} {small} at {}",
+                    unit.small(*error_mm),
+                    place.words(unit)
+                )
             }
             Self::Step { part, cause, change } => {
                 let by = match cause {
@@ -297,14 +303,14 @@ impl Alarm {
                     Cause::Radius => {
                         format!(
                             "{} at once: another cutter, or a chipped one",
-                            smaller(change.value, change.sigma, true)
+                            smaller(change.value, change.sigma, true, unit)
                         )
                     }
-                    Cause::RadiusOrForce => smaller(change.value, change.sigma, false) + " at once",
+                    Cause::RadiusOrForce => smaller(change.value, change.sigma, false, unit) + " at once",
                     Cause::Datum => format!(
-                        "the datum moved by {:.1} ± {:.1} µm: clamping, probe or temperature",
-                        1e3 * change.value.abs(),
-                        2e3 * change.sigma
+                        "the datum moved by {:.1} ± {:.1} {small}: clamping, probe or temperature",
+                        unit.small(change.value.abs()),
+                        unit.small(2.0 * change.sigma)
                     ),
                     Cause::Place => {
                         "not the force level, the cutter or the datum alone: look at the places of this part".to_owned()
@@ -316,9 +322,9 @@ impl Alarm {
                 let touches =
                     if *readings == 1 { "a reading fits".to_owned() } else { format!("{readings} readings fit") };
                 format!(
-                    "part {part}: {touches} to nothing before, {:+.1} µm at {}: a chip under the ball, or a wall that is another there; touch it again",
-                    1e3 * error_mm,
-                    place.words()
+                    "part {part}: {touches} to nothing before, {:+.1} {small} at {}: a chip under the ball, or a wall that is another there; touch it again",
+                    unit.small(*error_mm),
+                    place.words(unit)
                 )
             }
             Self::Leaving { part, place, cause, per_part_mm } => {
@@ -331,9 +337,9 @@ impl Alarm {
                     Cause::Datum | Cause::Place => "it is near its limit",
                 };
                 format!(
-                    "the tolerance is left at about part {part}, first at {}: {why} ({:+.2} µm a part there)",
-                    place.words(),
-                    1e3 * per_part_mm
+                    "the tolerance is left at about part {part}, first at {}: {why} ({:+.2} {small} a part there)",
+                    place.words(unit),
+                    unit.small(*per_part_mm)
                 )
             }
         }
@@ -341,9 +347,14 @@ impl Alarm {
 }
 
 /// A radius that was lost, in words; without a known deflection a larger force looks the same.
-fn smaller(lost_mm: f64, sigma_mm: f64, pushed: bool) -> String {
+fn smaller(lost_mm: f64, sigma_mm: f64, pushed: bool, unit: Unit) -> String {
     let which = if lost_mm > 0.0 { "smaller" } else { "larger" };
-    let by = format!("{:.1} ± {:.1} µm (2 sigma) {which}", 1e3 * lost_mm.abs(), 2e3 * sigma_mm);
+    let by = format!(
+        "{:.1} ± {:.1} {} (2 sigma) {which}",
+        unit.small(lost_mm.abs()),
+        unit.small(2.0 * sigma_mm),
+        unit.small_name()
+    );
     if pushed {
         return format!("the cutter's radius is {by}");
     }

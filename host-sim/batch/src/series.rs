@@ -1,5 +1,7 @@
 //! Readings of many parts as deviations at places.
 
+use truepath_ground::length::Unit;
+
 /// Readings this near to each other are of one place, mm along the contour and over the height.
 const SAME: [f64; 2] = [1.0, 1.0];
 
@@ -99,9 +101,10 @@ impl Place {
             && (self.height_mm - other.height_mm).abs() < SAME[1]
     }
 
-    /// In words.
-    pub fn words(&self) -> String {
+    /// In words, lengths in a unit.
+    pub fn words(&self, unit: Unit) -> String {
         let of = self.contour.as_ref().map_or_else(String::new, |name| format!("{name}, "));
-        format!("{of}s = {:.1} mm, {:.1} mm above the tip", self.s_mm, self.height_mm)
+        let (s, height, name) = (unit.of(self.s_mm), unit.of(self.height_mm), unit.name());
+        format!("{of}s = {s:.1} {name}, {height:.1} {name} above the tip")
     }
 }

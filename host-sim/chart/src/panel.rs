@@ -2,6 +2,7 @@
 
 use plotters::prelude::*;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Unit;
 
 use super::axis::Scale;
 use super::chart::{BELOW, RIGHT, chart, room};
@@ -12,7 +13,9 @@ use super::style::{DARK, ZERO, failed};
 use super::view::{SIZES, View, short};
 
 /// The lower axis of all of them.
-pub const ALONG: &str = "along the contour (mm)";
+pub fn along_name(unit: Unit) -> String {
+    format!("along the contour ({})", unit.name())
+}
 /// Usual height of one, two, three or more diagrams each, and the least, px.
 const HEIGHTS: [f64; 4] = [300.0, 220.0, 180.0, 150.0];
 const LEAST: f64 = 60.0;
@@ -139,7 +142,7 @@ pub fn along(window: (f64, f64)) -> Scale {
 /// # Errors
 /// What the view asks for and cannot be, texts that are too long; internal, when it cannot be drawn.
 pub fn panels(view: &View, title: &str, panels: &[Panel]) -> Result<Vec<u8>, Failure> {
-    panels_over(view, title, ALONG, panels)
+    panels_over(view, title, &along_name(view.unit), panels)
 }
 
 /// The same over another axis.

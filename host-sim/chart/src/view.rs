@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 
 use truepath_ground::diagnostics::InputError;
+use truepath_ground::length::Unit;
 
 use crate::axis::plain;
 use crate::codes::{Z001, Z002, Z003, Z004};
@@ -31,9 +32,16 @@ pub struct View {
     pub to_mm: Option<f64>,
     /// How many times larger than the wall the error is drawn.
     pub magnify: Option<f64>,
+    /// The unit of what is drawn.
+    pub unit: Unit,
 }
 
 impl View {
+    /// The usual view, in a unit.
+    pub fn in_unit(unit: Unit) -> Self {
+        Self { unit, ..Self::default() }
+    }
+
     /// The title, or the usual one.
     pub fn titled<'a>(&'a self, usual: &'a str) -> Result<&'a str, InputError> {
         let title = self.title.as_deref().unwrap_or(usual);
@@ -60,16 +68,18 @@ impl View {
         Ok((width, height))
     }
 
-    /// The stretch shown, of a contour that reaches from `start` to `end`.
+    /// The stretch shown, of a contour that reaches from `start` to `end`; all in the unit of the view.
     pub fn window(&self, (start, end): (f64, f64)) -> Result<(f64, f64), InputError> {
-        let (from, to) = (self.from_mm.unwrap_or(start), self.to_mm.unwrap_or(end));
+        let said = |mm: f64| self.unit.said(mm);
+        let (from, to) = (self.from_mm.map_or(start, said), self.to_mm.map_or(end, said));
+        let name = self.unit.name();
         // What is told apart, mm: much less than a step of any table.
         const LEAST: f64 = 1e-4;
-        if from.max(start) + LEAST > to.min(end) || !from.is_finite() || !to.is_finite() {
+        if from.max(start) + said(LEAST) > to.min(end) || !from.is_finite() || !to.is_finite() {
             // Of a number nobody means not every digit.
-            let told = |mm: f64| if mm.abs() < 1e9 { plain(mm) } else { format!("{mm:e}") };
-            let found = format!("the stretch from {} to {} mm holds nothing of the contour", told(from), told(to));
-            let expected = format!("a stretch between {} and {} mm", plain(start), plain(end));
+            let told = |at: f64| if at.abs() < 1e9 { plain(at) } else { format!("{at:e}") };
+            let found = format!("the stretch from {} to {} {name} holds nothing of the contour", told(from), told(to));
+            let expected = format!("a stretch between {} and {} {name}", plain(start), plain(end));
             return Err(Z002.error(found, expected));
         }
         Ok((from.max(start), to.min(end)))

@@ -306,7 +306,7 @@ fn design<'a>(
         if remarks.part == MeasuredPart::Uncorrected {
             corners.with_arcs = sharp_corners::with_arcs(pass, &identified);
         }
-        warnings.push(corners.text());
+        warnings.push(corners.text(pass.unit()));
     }
     warnings.extend(feeds.warnings(mm(correction.sigma_by_points.iter().copied().max().unwrap_or_default())));
     let wall = |nodes| Surface::predicted(&machine, &identified, request.beside, nodes);

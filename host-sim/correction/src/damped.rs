@@ -1,6 +1,7 @@
 //! Where the points say too little about the wall, so that only a share of the correction is applied.
 
 use truepath_core::cut::Path;
+use truepath_ground::length::Unit;
 use truepath_ground::units::{float, mm};
 
 use crate::correction::Correction;
@@ -20,13 +21,14 @@ pub struct DampedSummary {
 
 impl DampedSummary {
     /// A sentence for the user.
-    pub fn text(&self) -> String {
+    pub fn text(&self, unit: Unit) -> String {
         format!(
-            "the points leave the wall at s = {:.1}..{:.1} mm uncertain by up to {:.4} mm (one sigma), nearly as much as it is wrong: only {:.0} % of the correction is applied there; probe a place there (truepath probe --next)",
-            self.from_s_mm,
-            self.to_s_mm,
-            self.sigma_mm,
-            100.0 * self.least_share
+            "the points leave the wall at s = {:.1}..{:.1} {name} uncertain by up to {:.4} {name} (one sigma), nearly as much as it is wrong: only {:.0} % of the correction is applied there; probe a place there (truepath probe --next)",
+            unit.of(self.from_s_mm),
+            unit.of(self.to_s_mm),
+            unit.of(self.sigma_mm),
+            100.0 * self.least_share,
+            name = unit.name()
         )
     }
 }

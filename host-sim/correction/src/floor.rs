@@ -13,6 +13,7 @@
 //! All are standard deviations but the last, which is a largest error. Limit: clamping and temperature belong to the machine here.
 
 use truepath_core::identify::Observation;
+use truepath_ground::length::Unit;
 use truepath_ground::units::{float, mm};
 
 use crate::discrepancy::least_change;
@@ -106,16 +107,16 @@ impl Floor {
     }
 
     /// From one error to a predicted one, or to the floor where that is larger.
-    pub fn fall(&self, before_mm: f64, predicted_mm: f64) -> String {
-        let floor = self.mm();
-        if predicted_mm >= floor {
-            return format!("{before_mm:.4} -> {predicted_mm:.4} mm");
+    pub fn fall(&self, unit: Unit, before_mm: f64, predicted_mm: f64) -> String {
+        let [before, predicted, floor] = [before_mm, predicted_mm, self.mm()].map(|mm| unit.of(mm));
+        if predicted_mm >= self.mm() {
+            return format!("{before:.4} -> {predicted:.4} {}", unit.name());
         }
-        format!("{before_mm:.4} -> {floor:.4} mm, the floor (the model alone: {predicted_mm:.4})")
+        format!("{before:.4} -> {floor:.4} {}, the floor (the model alone: {predicted:.4})", unit.name())
     }
 
     /// What the next part will be, and what the machine repeats to, in a line.
-    pub fn line(&self, after: &Surface) -> String {
+    pub fn line(&self, unit: Unit, after: &Surface) -> String {
         // The drift is part of the predicted deviation.
         let sigma = after.mean_sigma_mm.hypot(self.machine_mm).hypot(self.probe_mm);
         let machine = match self.machine_from {
@@ -123,46 +124,49 @@ impl Floor {
             KnownFrom::Prior => "machines repeat",
         };
         format!(
-            "Will be {:.3} ± {sigma:.3} mm (mean, 1 sigma), {:.3} at the worst height; {machine} to about {:.3}",
-            self.or(after.mean_mm),
-            self.or(after.profile.profile_mm),
-            self.machine_mm
+            "Will be {:.3} ± {:.3} {} (mean, 1 sigma), {:.3} at the worst height; {machine} to about {:.3}",
+            unit.of(self.or(after.mean_mm)),
+            unit.of(sigma),
+            unit.name(),
+            unit.of(self.or(after.profile.profile_mm)),
+            unit.of(self.machine_mm)
         )
     }
 
     /// The same with what a second correction can do.
-    pub fn promise(&self, after: &Surface) -> String {
-        format!("{}: {}.", self.line(after), self.next(after))
+    pub fn promise(&self, unit: Unit, after: &Surface) -> String {
+        format!("{}: {}.", self.line(unit, after), self.next(unit, after))
     }
 
     /// What a second correction can do.
-    pub fn next(&self, after: &Surface) -> String {
+    pub fn next(&self, unit: Unit, after: &Surface) -> String {
         // The largest of what many places do not repeat is some two deviations.
         let held = 2.0 * self.mm();
         if after.mean_mm <= held {
             "a second correction cannot improve that".to_owned()
         } else {
-            format!("a second correction can come down to about {held:.3}")
+            format!("a second correction can come down to about {:.3}", unit.of(held))
         }
     }
 
     /// Its parts in a line.
-    pub fn words(&self) -> String {
+    pub fn words(&self, unit: Unit) -> String {
         let from = match self.machine_from {
             KnownFrom::Job => "the job says so".to_owned(),
             KnownFrom::Parts => "corrected parts show it".to_owned(),
             KnownFrom::Prior => {
-                let [low, high] = PRIOR_RANGE_MM;
+                let [low, high] = PRIOR_RANGE_MM.map(|mm| unit.of(mm));
                 format!("a prior: NIST test bed, 59 equal parts, {low:.3} to {high:.3}")
             }
         };
         format!(
-            "{:.4} mm (1 sigma) = machine {:.4} ({from}), probe {:.4}, drift {:.4}; over the height {:.4} besides",
-            self.mm(),
-            self.machine_mm,
-            self.probe_mm,
-            self.drift_mm,
-            self.over_height_mm
+            "{:.4} {} (1 sigma) = machine {:.4} ({from}), probe {:.4}, drift {:.4}; over the height {:.4} besides",
+            unit.of(self.mm()),
+            unit.name(),
+            unit.of(self.machine_mm),
+            unit.of(self.probe_mm),
+            unit.of(self.drift_mm),
+            unit.of(self.over_height_mm)
         )
     }
 }
@@ -242,10 +246,10 @@ mod tests {
         let profile = Predicted { profile_mm: 0.035, sigma_mm: 0.004 };
         let wall = Surface { profile, mean_mm: 0.0005, mean_sigma_mm: 0.003, ..Surface::default() };
         assert_eq!(
-            floor.promise(&wall),
+            floor.promise(Unit::Millimetre, &wall),
             "Will be 0.005 ± 0.006 mm (mean, 1 sigma), 0.035 at the worst height; your machine repeats to about 0.005: a second correction cannot improve that."
         );
-        let more = floor.promise(&Surface { mean_mm: 0.012, ..wall });
+        let more = floor.promise(Unit::Millimetre, &Surface { mean_mm: 0.012, ..wall });
         assert!(more.contains("Will be 0.012") && more.ends_with("a second correction can come down to about 0.010."));
     }
 }

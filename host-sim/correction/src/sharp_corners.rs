@@ -4,6 +4,7 @@ use truepath_core::cut::Path;
 use truepath_core::job;
 use truepath_core::units::Offset;
 use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::length::Unit;
 use truepath_ground::units::{mm, nm, rounded};
 use truepath_job::pass::{Pass, PathBuffer};
 
@@ -71,23 +72,28 @@ impl SharpCorners {
     }
 
     /// In words.
-    pub fn text(&self) -> String {
-        let Self { line, count, before_mm, after_mm, left_in_corner_mm, cut_into_corner_mm, .. } = self;
+    pub fn text(&self, unit: Unit) -> String {
+        let Self { line, count, left_in_corner_mm, cut_into_corner_mm, .. } = self;
+        let name = unit.name();
+        let [before, after, left, cut] =
+            [self.before_mm, self.after_mm, *left_in_corner_mm, *cut_into_corner_mm].map(|mm| unit.of(mm));
         let corners = match count {
             0 | 1 => format!("a sharp inside corner at line {line}"),
             count => format!("{count} sharp inside corners, the first at line {line}"),
         };
         let rounding = if cut_into_corner_mm > left_in_corner_mm {
-            format!("the corner itself is cut {cut_into_corner_mm:.3} mm too deep where the cutter springs back")
+            format!("the corner itself is cut {cut:.3} {name} too deep where the cutter springs back")
         } else {
-            format!("{left_in_corner_mm:.3} mm stay in the corner itself")
+            format!("{left:.3} {name} stay in the corner itself")
         };
         let mut text = format!(
-            "{corners}: the load ends there the moment the direction changes, so the walls beside are predicted to be {before_mm:.3} mm off without and {after_mm:.3} mm with the correction, and {rounding}"
+            "{corners}: the load ends there the moment the direction changes, so the walls beside are predicted to be {before:.3} {name} off without and {after:.3} {name} with the correction, and {rounding}"
         );
         if let Some(WithArcs { corner_radius_mm, after_mm, .. }) = self.with_arcs {
             text += &format!(
-                "; if the drawing allows corners of {corner_radius_mm} mm, truepath fillet JOB --corner-radius {corner_radius_mm} -o DIR puts arcs there, with which {after_mm:.3} mm are predicted along the whole contour"
+                "; if the drawing allows corners of {} {name}, truepath fillet JOB --corner-radius {corner_radius_mm} -o DIR puts arcs there, with which {:.3} {name} are predicted along the whole contour",
+                unit.of(corner_radius_mm),
+                unit.of(after_mm)
             );
         }
         text

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use truepath_core::cut::{Path, WallLaw};
 use truepath_core::identify;
 use truepath_core::units::{Offset, Real};
+use truepath_ground::length::Unit;
 use truepath_ground::units::{float, mm};
 use truepath_job::feature::FeatureSummary;
 use truepath_job::feed::{FeedSummary, Unscheduled};
@@ -42,6 +43,9 @@ pub struct Parameter {
 pub struct CorrectSummary {
     /// Version of this file.
     pub version: u32,
+    /// The unit of the program, in which people are told.
+    #[serde(skip)]
+    pub unit: Unit,
     /// How far the cutter runs out by what the points say, mm: radial offset of its axis. Absent where the job says it, and where they
     /// do not speak for any.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -244,6 +248,7 @@ pub fn correct_summary(
     let runout = pass.core.setup.runout.offset;
     CorrectSummary {
         version: 1,
+        unit: pass.unit(),
         runout_mm: (runout != pass.core.job.tool.runout).then_some(mm(runout)),
         profile_error_before_mm: surface.before.profile.profile_mm,
         profile_error_after_mm: surface.after.profile.profile_mm,

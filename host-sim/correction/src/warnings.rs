@@ -4,6 +4,7 @@ use truepath_core::cut::Loop;
 use truepath_core::identify::Parameter;
 use truepath_core::probe::Contact;
 use truepath_core::units::Offset;
+use truepath_ground::length::Unit;
 use truepath_ground::units::{float, mm};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
@@ -24,6 +25,7 @@ pub fn model_warnings(
     correction: &Correction,
     machine: &Loop,
 ) -> Vec<String> {
+    let (unit, name) = (pass.unit(), pass.unit().name());
     let mut out = Vec::new();
     if identified.outlying() > 0 {
         let lines: Vec<String> = identified
@@ -32,12 +34,12 @@ pub fn model_warnings(
             .zip(&measurement.contacts)
             .filter(|(o, _)| o.is_outlying())
             .map(|(o, contact)| {
-                let name = measurement.name_of(contact.line);
                 format!(
-                    "{name} at s = {:.2} mm (measured {:.4}, model {:.4} mm)",
-                    mm(o.s),
-                    mm(o.error),
-                    mm(o.predicted)
+                    "{} at s = {:.2} {name} (measured {:.4}, model {:.4} {name})",
+                    measurement.name_of(contact.line),
+                    unit.of(mm(o.s)),
+                    unit.of(mm(o.error)),
+                    unit.of(mm(o.predicted))
                 )
             })
             .collect();
@@ -45,32 +47,35 @@ pub fn model_warnings(
     }
     if correction.passage.unsettled > 0 {
         out.push(format!(
-            "the elastic loop did not settle at {} places (worst residual {:.4} mm): the machine is too soft for this cut",
+            "the elastic loop did not settle at {} places (worst residual {:.4} {name}): the machine is too soft for this cut",
             correction.passage.unsettled,
-            mm(correction.passage.worst_residual)
+            unit.of(mm(correction.passage.worst_residual))
         ));
     }
     if let Some(guard) = guard_summary(machine.path, correction) {
         if !guard.heeded && guard.deepest_mm > guard.max_gouge_mm {
             out.push(format!(
-                "max_gouge_mm = {} is not kept: {:.4} mm are predicted (only law = \"model\" heeds it)",
-                guard.max_gouge_mm, guard.deepest_mm
+                "max_gouge_mm = {} is not kept: {:.4} {name} are predicted (only law = \"model\" heeds it)",
+                guard.max_gouge_mm,
+                unit.of(guard.deepest_mm)
             ));
         } else if guard.deepest_with_confidence_mm > guard.max_gouge_mm + 0.001 {
             out.push(format!(
-                "max_gouge_mm = {} is not kept with three standard deviations to spare: up to {:.4} mm may be cut too deep, {:.4} mm are predicted",
-                guard.max_gouge_mm, guard.deepest_with_confidence_mm, guard.deepest_mm
+                "max_gouge_mm = {} is not kept with three standard deviations to spare: up to {:.4} {name} may be cut too deep, {:.4} {name} are predicted",
+                guard.max_gouge_mm,
+                unit.of(guard.deepest_with_confidence_mm),
+                unit.of(guard.deepest_mm)
             ));
         }
         if let Some(most) = guard.places.iter().max_by(|a, b| a.moved_mm().total_cmp(&b.moved_mm())) {
             out.push(format!(
-                "max_gouge_mm = {} holds the cutter back at {} places, most at s = {:.2} mm: {} {:.4} mm towards the wall, {:.4} mm are allowed",
+                "max_gouge_mm = {} holds the cutter back at {} places, most at s = {:.2} {name}: {} {:.4} {name} towards the wall, {:.4} {name} are allowed",
                 guard.max_gouge_mm,
                 guard.places.len(),
-                most.at_s_mm,
+                unit.of(most.at_s_mm),
                 if correction.used_again { "the correction that is used again goes" } else { "the target wants" },
-                most.wanted_mm,
-                most.allowed_mm
+                unit.of(most.wanted_mm),
+                unit.of(most.allowed_mm)
             ));
         }
     }
@@ -78,9 +83,16 @@ pub fn model_warnings(
     let (values, believed) = (identified.fit().parameters.values(), identified.prior().mean.values());
     for (theta, parameter) in far {
         let [value, prior] = [values, believed].map(|all| float(all[parameter as usize]));
-        let unit = if parameter.unit() == "1" { String::new() } else { format!(" {}", parameter.unit()) };
+        // What is no length is told in the units of the job's keys.
+        let of = if parameter.unit() == "mm" { unit } else { Unit::default() };
+        let (value, prior) = (of.of(value), of.of(prior));
+        let behind = match parameter.unit() {
+            "1" => String::new(),
+            "mm" => format!(" {name}"),
+            other => format!(" {other}"),
+        };
         out.push(format!(
-            "{} came out at {value:.4}{unit}, {:.1} standard deviations from the {prior:.4}{unit} of the job: {}; the correction follows the points",
+            "{} came out at {value:.4}{behind}, {:.1} standard deviations from the {prior:.4}{behind} of the job: {}; the correction follows the points",
             said(parameter),
             float(theta.abs()),
             cause(parameter)
@@ -89,11 +101,11 @@ pub fn model_warnings(
     let peak = correction.predicted.iter().map(|p| p.before.mean.abs()).max().unwrap_or_default();
     let sigma = correction.sigma_by_points.iter().copied().max().unwrap_or_default();
     if let Some(damped) = damped_summary(machine.path, correction) {
-        out.push(damped.text());
+        out.push(damped.text(unit));
     } else if sigma.nm() * 8 > peak.nm() {
         out.push(format!(
-            "the points leave the corrected wall uncertain by {:.4} mm (one sigma); probe more places, best in the corners",
-            mm(sigma)
+            "the points leave the corrected wall uncertain by {:.4} {name} (one sigma); probe more places, best in the corners",
+            unit.of(mm(sigma))
         ));
     }
     if let Some(reversal) = reversal(pass, machine, correction) {
@@ -139,6 +151,7 @@ pub fn beyond_tolerance(pass: &Pass, remarks: &Remarks, after: &Surface) -> Opti
     if half <= 0.0 || expected + twice_sigma <= half {
         return None;
     }
+    let (unit, name) = (pass.unit(), pass.unit().name());
     let verb = if expected > half { "cannot hold" } else { "may not hold" };
     let feature = pass.job.which.feature.as_ref().map_or_else(String::new, |id| format!(" --feature {id}"));
     let plan = |probe: &str| {
@@ -157,9 +170,12 @@ pub fn beyond_tolerance(pass: &Pass, remarks: &Remarks, after: &Surface) -> Opti
         }
     };
     Some(format!(
-        "one corrected pass {verb} {half} mm at every height of the wall: {expected:.4} ± {twice_sigma:.4} mm (2 sigma) are expected at the worst place, s = {:.1} mm, {:.1} mm above the tip, most of it {}; {next}",
-        after.s_mm,
-        after.height_mm,
+        "one corrected pass {verb} {} {name} at every height of the wall: {:.4} ± {:.4} {name} (2 sigma) are expected at the worst place, s = {:.1} {name}, {:.1} {name} above the tip, most of it {}; {next}",
+        unit.of(half),
+        unit.of(expected),
+        unit.of(twice_sigma),
+        unit.of(after.s_mm),
+        unit.of(after.height_mm),
         after.causes.largest()
     ))
 }
@@ -201,8 +217,9 @@ pub fn misread(measured: &Pass, first_pass: bool, contacts: &[Contact]) -> Vec<S
         && median.nm() * 5 > allowance.nm() * 2
     {
         out.push(format!(
-            "the wall stands {:.3} mm off its place, {:.0} % of allowance_mm = {}: if that is the stock a first pass left, give --first-pass with its job; otherwise look at the probe and the origin",
-            mm(median),
+            "the wall stands {:.3} {} off its place, {:.0} % of allowance_mm = {}: if that is the stock a first pass left, give --first-pass with its job; otherwise look at the probe and the origin",
+            measured.unit().of(mm(median)),
+            measured.unit().name(),
             100.0 * mm(median) / mm(allowance),
             mm(allowance)
         ));
@@ -240,10 +257,11 @@ fn reversal(pass: &Pass, machine: &Loop, correction: &Correction) -> Option<Stri
             let (n, c) = if axis == 0 { (nominal.x.nm(), change.x.nm()) } else { (nominal.y.nm(), change.y.nm()) };
             if n.abs() > 1_000 && (n + c).signum() == -n.signum() {
                 return Some(format!(
-                    "near s = {:.2} mm the correction reverses {} against the program: its backlash of {} mm acts there",
-                    mm(pair[0].s),
+                    "near s = {:.2} {} the correction reverses {} against the program: its backlash of {} {1} acts there",
+                    pass.unit().of(mm(pair[0].s)),
+                    pass.unit().name(),
                     ["X", "Y"][axis],
-                    mm(backlash)
+                    pass.unit().of(mm(backlash))
                 ));
             }
         }

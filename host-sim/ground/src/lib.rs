@@ -10,6 +10,7 @@ pub mod diagnostics;
 pub mod document;
 pub mod files;
 pub mod interruption;
+pub mod length;
 pub mod library;
 pub mod limits;
 pub mod notation;

@@ -10,6 +10,7 @@ use truepath_ground::units::mm;
 use crate::codes::J040;
 use crate::feature::{Plan, Survey};
 use crate::job::{Assumed, JobFile};
+use crate::post::Post;
 
 /// Steps that differ by less are the same.
 const SAME: Offset = Offset::from_um(10);
@@ -33,18 +34,21 @@ pub(crate) fn settle(job: &mut JobFile, program: &Source, plan: Option<&Plan>, l
     let index = usize::try_from(level).unwrap_or(1).saturating_sub(1);
     // What has no height, or is not there, is refused where the contour is read.
     let Some(&(z, line)) = levels.get(index) else { return Ok(()) };
+    // The program's own figures, as they stand in it.
+    let unit = Post::read(program).unit.told();
+    let told = |z: Position| unit.of(height(z));
     let above = index.checked_sub(1).and_then(|before| levels.get(before)).map(|(z, _)| *z);
     let (depth, why) = match above {
         Some(above) if above > z => {
-            (above - z, format!("from the level before, Z {}, down to Z {}", height(above), height(z)))
+            (above - z, format!("from the level before, Z {}, down to Z {}", told(above), told(z)))
         }
         _ if z < Position::ZERO => (
             Position::ZERO - z,
-            format!("from Z 0, taken for the top of the stock, down to Z {} of line {line}", height(z)),
+            format!("from Z 0, taken for the top of the stock, down to Z {} of line {line}", told(z)),
         ),
         _ => match levels.get(index + 1) {
             Some((next, _)) if *next < z => {
-                (z - *next, format!("the step from Z {} to the next level, Z {}", height(z), height(*next)))
+                (z - *next, format!("the step from Z {} to the next level, Z {}", told(z), told(*next)))
             }
             _ => {
                 let found = format!(

@@ -12,6 +12,7 @@ use truepath_core::geometry::{Block, Contour, Point, Side};
 use truepath_core::job::{self, Compensation, JobError, Part};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::length::Unit;
 use truepath_ground::rows::median;
 use truepath_ground::units::{float, mm};
 
@@ -327,6 +328,11 @@ impl Pass {
         self.job.numbers.probe = Some(probe);
         self.core.job.probe = Some(probe);
         Ok(self)
+    }
+
+    /// The unit of the program on the contour, in which people are told.
+    pub fn unit(&self) -> Unit {
+        self.core.contour.units.into()
     }
 
     /// The level of the feature, from 1.

@@ -3,6 +3,7 @@
 use serde::Serialize;
 use truepath_batch::batch::{Alarm, Known, State};
 use truepath_batch::series::{Event, Place};
+use truepath_ground::length::Unit;
 use truepath_ground::units::rounded;
 
 use crate::summary::Summary;
@@ -281,7 +282,7 @@ impl Raised {
             level,
             batch: batch.to_owned(),
             part: *part,
-            text: clipped(&alarm.words()),
+            text: clipped(&alarm.words(Unit::Millimetre)),
             since: since.to_owned(),
             qualifier,
         }

@@ -10,6 +10,7 @@ use truepath_chart::panel::{Mark, Panel, panels_over};
 use truepath_chart::style::{DARK, INK_AFTER, INK_BEFORE, Ink, NOMINAL};
 use truepath_chart::view::View;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Unit;
 
 const STYLE: &str = include_str!("planned.css");
 /// Places come first, and all columns of theirs are numbers.
@@ -43,7 +44,7 @@ pub fn batch_page(batch: &Batch, name: &str) -> Result<String, Failure> {
                 main {
                     h1 { "Batch: " (name) }
                     p.verdict { (verdict(batch)) }
-                    ul { @for text in batch.words() { li { (text) } } }
+                    ul { @for text in batch.words(Unit::Millimetre) { li { (text) } } }
                     p.soft {
                         (batch.touched) " parts touched, " (batch.parts[0]) " to " (batch.parts[1]) "; a reading repeats to ± "
                         (um(2.0 * batch.noise_mm)) " µm (2 sigma) beside what is told here"
@@ -54,7 +55,7 @@ pub fn batch_page(batch: &Batch, name: &str) -> Result<String, Failure> {
                     }
                     @if let (Some(place), Some(svg)) = (worst, chart) {
                         h2 { (nearest) }
-                        figure { (PreEscaped(svg)) figcaption { (place.place.words()) ", individuals and exponentially weighted mean" } }
+                        figure { (PreEscaped(svg)) figcaption { (place.place.words(Unit::Millimetre)) ", individuals and exponentially weighted mean" } }
                     }
                     h2 { "Every place" }
                     div.scroll tabindex="0" role="region" aria-label="Every place" { (places(batch)) }
@@ -179,7 +180,7 @@ fn places(batch: &Batch) -> Markup {
                 @for p in &batch.places {
                     @let capable = p.chart.as_ref().and_then(|chart| chart.capability);
                     tr {
-                        td { (p.place.words()) }
+                        td { (p.place.words(Unit::Millimetre)) }
                         td { (p.deviations_mm.len()) }
                         td { @if let Some(chart) = &p.chart { (um(chart.mean_mm)) } }
                         td { @if let Some(chart) = &p.chart { (um(chart.sigma_mm)) } }

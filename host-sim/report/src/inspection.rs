@@ -4,6 +4,7 @@ use truepath_core::checksum::crc32;
 use truepath_core::probe::Contact;
 use truepath_correction::inspection::{Count, Coverage, Judgement, Verdict};
 use truepath_correction::surface::touched::TouchedSurface;
+use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 use truepath_job::feature::FeatureSummary;
 use truepath_job::job::Assumed;
@@ -133,7 +134,6 @@ pub fn inspect_summary(
     let n = errors.len().max(1) as f64;
     let surface = TouchedSurface::of_measurement(pass, measurement);
     let feature = pass.feature(&[]);
-    let beyond = feature.as_ref().and_then(FeatureSummary::not_judged);
     InspectSummary {
         version: 1,
         part: part.names.clone(),
@@ -152,7 +152,7 @@ pub fn inspect_summary(
         uncertainty_mm: part.uncertainty.map(mm),
         verdict: judgement.verdict.clone(),
         points_by_verdict: judgement.count,
-        statements: judgement.statements.iter().cloned().chain([between_touches(&surface)]).chain(beyond).collect(),
+        statements: statements(judgement, &surface, feature.as_ref(), Unit::Millimetre),
         coverage: Some(coverage),
         contour: None,
         feature,
@@ -160,6 +160,17 @@ pub fn inspect_summary(
         warnings,
         contours: Vec::new(),
     }
+}
+
+/// What the verdict on a wall rests on and what it does not cover, in a unit.
+pub fn statements(
+    judgement: &Judgement,
+    surface: &TouchedSurface,
+    feature: Option<&FeatureSummary>,
+    unit: Unit,
+) -> Vec<String> {
+    let beyond = feature.and_then(|feature| feature.not_judged(unit));
+    judgement.statements.iter().cloned().chain([between_touches(surface)]).chain(beyond).collect()
 }
 
 /// What the measurement leaves open of the whole wall.

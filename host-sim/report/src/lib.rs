@@ -19,7 +19,7 @@ mod tables;
 mod wall;
 
 pub use aqdef::aqdef;
-pub use inspection::{InspectSummary, ToleranceSummary, inspect_summary};
+pub use inspection::{InspectSummary, ToleranceSummary, inspect_summary, statements};
 pub use planned::{PlannedWall, planned_map_csv, planned_page};
 pub use points::{judged_points_csv, points_csv};
 pub use qif::{QifWall, qif};

@@ -7,6 +7,7 @@ use truepath_correction::plan::choice::{Choice, Plan};
 use truepath_correction::surface::wall::WallMap;
 use truepath_ground::diagnostics::Failure;
 
+use truepath_ground::length::Unit;
 use truepath_ground::table::table;
 use truepath_ground::units::rounded;
 
@@ -130,7 +131,7 @@ fn of_wall(section: &Section<'_>) -> Markup {
             figure class={ "choice w" (section.choice(k + 1)) } {
                 (section.scroll(&format!("The wall of choice {}", k + 1), wall(&choice.map, plan.tolerance_mm)))
                 figcaption {
-                    "choice " (k + 1) ": " (choice.process) ". What is left, " (choice.surface.worst_words())
+                    "choice " (k + 1) ": " (choice.process) ". What is left, " (choice.surface.worst_words(Unit::Millimetre))
                 }
             }
         }

@@ -1,6 +1,7 @@
 //! `summary.json` of `simulate`.
 
 use truepath_correction::remarks::said_of_every;
+use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 use truepath_job::feature::FeatureSummary;
 use truepath_job::job::Assumed;
@@ -15,6 +16,9 @@ use super::tables::TraceRow;
 pub struct SimulateSummary {
     /// Version of this file.
     pub version: u32,
+    /// The unit of the program, in which people are told.
+    #[serde(skip)]
+    pub unit: Unit,
     /// Who cut: `core` or `plant`.
     pub by: &'static str,
     /// Length of the contour, mm.
@@ -100,6 +104,7 @@ pub fn simulate_summary(pass: &Pass, by: &'static str, trace: &[TraceRow], warni
     let finite: Vec<f64> = trace.iter().map(|r| r.error_mm).filter(|e| e.is_finite()).collect();
     SimulateSummary {
         version: 1,
+        unit: pass.unit(),
         by,
         length_mm: mm(pass.core.contour.length),
         max_error_mm: most(|r| r.error_mm.abs()),

@@ -9,6 +9,7 @@ use truepath_batch::codes::{Q011, Q012};
 use truepath_batch::series::{Event, Place, Reading, Series};
 use truepath_core::probe::{CutWith, Rejected};
 use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::length::Unit;
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::{float, mm, rounded};
 use truepath_job::job::{PartFlags, Said};
@@ -57,6 +58,9 @@ pub struct Options {
 /// What came of it.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Report {
+    /// The unit of the program, in which people are told.
+    #[serde(skip)]
+    pub unit: Unit,
     /// The batch.
     #[serde(flatten)]
     pub batch: Batch,
@@ -80,7 +84,7 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
         None => Ok(()),
         Some(alarm) => {
             let expected = "a batch that goes on as it began, in tolerance";
-            Err(Q011.error(alarm.words(), expected).by_judgement().into())
+            Err(Q011.error(alarm.words(report.unit), expected).by_judgement().into())
         }
     }
 }
@@ -88,7 +92,7 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
 fn words(report: &Report) -> String {
     let batch = &report.batch;
     let mut text = format!("{} parts touched, {} to {}\n", batch.touched, batch.parts[0], batch.parts[1]);
-    for said in &report.words {
+    for said in batch.words(report.unit) {
         text += &format!("{said}\n");
     }
     if let Some(share) = batch.next_in_tolerance {
@@ -181,12 +185,13 @@ pub fn run(options: &Options) -> Result<Report, Failure> {
     let batch = Batch::of(&series, &request)
         .ok_or_else(|| Q012.error("no part of the table was touched", "at least one line with a probe file"))
         .map_err(|error| error.at(&table, 0..0))?;
+    let unit = walls.first().map(Pass::unit).unwrap_or_default();
     let name = walls.first().map_or_else(String::new, |pass| {
         pass.job.part.names.name.clone().unwrap_or_else(|| pass.program.name().to_owned())
     });
     folder.write("batch.html", batch_page(&batch, &name)?.as_bytes())?;
-    let (words, next) = (batch.words(), next(&batch, options));
-    let report = Report { words, next, batch, page: options.output.join("batch.html"), warnings };
+    let (words, next) = (batch.words(Unit::Millimetre), next(&batch, options));
+    let report = Report { unit, words, next, batch, page: options.output.join("batch.html"), warnings };
     folder.write("summary.json", &json(&report)?)?;
     folder.commit()?;
     Ok(report)

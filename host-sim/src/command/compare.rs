@@ -8,6 +8,7 @@ use truepath_correction::correct::as_its_points_tell;
 use truepath_correction::correction::identify;
 use truepath_correction::surface::expected::Surfaces;
 use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::length::Unit;
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::{float, mm};
 use truepath_job::job::Said;
@@ -58,12 +59,16 @@ fn words(s: &CompareSummary) -> String {
         "plant" => "on the virtual machine, which shares no physics with the model",
         _ => "on the machine identified from the points: the model's own prediction",
     };
+    let (unit, name) = (s.unit, s.unit.name());
     let mut text = format!(
-        "{on}\nerror of the target ({}, heights {:.1} to {:.1} mm) and at any height, without {:.1} mm at either end\n\n\
-         law                     largest       rms  any height      95 %     gouge   mm\n",
-        s.target, s.band_mm[0], s.band_mm[1], s.trim_mm
+        "{on}\nerror of the target ({}, heights {:.1} to {:.1} {name}) and at any height, without {:.1} {name} at either end\n\n\
+         law                     largest       rms  any height      95 %     gouge   {name}\n",
+        s.target,
+        unit.of(s.band_mm[0]),
+        unit.of(s.band_mm[1]),
+        unit.of(s.trim_mm)
     );
-    let number = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.4}"));
+    let number = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{:.4}", unit.of(v)));
     for row in &s.laws {
         text += &format!(
             "{:<20} {:>10} {:>9} {:>11} {:>9} {:>9}\n",
@@ -77,7 +82,7 @@ fn words(s: &CompareSummary) -> String {
     }
     text.push('\n');
     if let [before, .., after] = &s.laws[..] {
-        text += &whole_wall(before, after, s.target);
+        text += &whole_wall(before, after, s.target, unit);
     }
     for row in s.laws.iter().filter(|row| !row.remark.is_empty()) {
         text += &format!("{}: {}\n", row.title, row.remark);
@@ -86,22 +91,23 @@ fn words(s: &CompareSummary) -> String {
 }
 
 /// The whole wall without a correction and with that of the last law, and what makes the worst of the latter.
-fn whole_wall(before: &Row, after: &Row, target: &str) -> String {
+fn whole_wall(before: &Row, after: &Row, target: &str, unit: Unit) -> String {
+    let name = unit.name();
     if let (Some(without), Some(with)) = (before.expected, after.expected) {
         let (surfaces, within) = (Surfaces { before: without, after: with }, [with.p95_mm, 2.0 * with.p95_sigma_mm]);
         return format!(
-            "{}, with what the points leave open (± 2 sigma): {}; 95 % of the wall within {:.3} -> {:.3} ± {:.3} mm\n  {}\n\n",
+            "{}, with what the points leave open (± 2 sigma): {}; 95 % of the wall within {:.3} -> {:.3} ± {:.3} {name}\n  {}\n\n",
             after.title,
-            surfaces.words(),
-            without.p95_mm,
-            within[0],
-            within[1],
-            with.worst_words()
+            surfaces.words(unit),
+            unit.of(without.p95_mm),
+            unit.of(within[0]),
+            unit.of(within[1]),
+            with.worst_words(unit)
         );
     }
-    let short = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.3}"));
+    let short = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{:.3}", unit.of(v)));
     format!(
-        "{}: {} {} -> {} mm; worst at any height {} -> {} mm; 95 % of the wall within {} -> {} mm\n{}\n",
+        "{}: {} {} -> {} {name}; worst at any height {} -> {} {name}; 95 % of the wall within {} -> {} {name}\n{}\n",
         after.title,
         if target == "mean" { "mean over the height" } else { "target" },
         short(before.max_error_mm),
@@ -110,7 +116,7 @@ fn whole_wall(before: &Row, after: &Row, target: &str) -> String {
         short(after.worst_height_mm),
         short(before.p95_mm),
         short(after.p95_mm),
-        after.causes.map_or_else(String::new, |causes| format!("  at the worst place: {}\n", causes.words())),
+        after.causes.map_or_else(String::new, |causes| format!("  at the worst place: {}\n", causes.words(unit))),
     )
 }
 
@@ -119,6 +125,9 @@ fn whole_wall(before: &Row, after: &Row, target: &str) -> String {
 pub struct CompareSummary {
     /// Version of this file.
     pub version: u32,
+    /// The unit of the program, in which people are told.
+    #[serde(skip)]
+    pub unit: Unit,
     /// On which machine: `identified` (the model's own prediction) or `plant`.
     pub machine: &'static str,
     /// The target whose error is compared: `mean`, `tip` or `minimax`.
@@ -176,6 +185,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CompareSu
     let depth = float(pass.core.setup.axial_depth);
     let summary = CompareSummary {
         version: 1,
+        unit: pass.unit(),
         machine: if plant.is_some() { "plant" } else { "identified" },
         target: target_name(wanted.target),
         band_mm: [float(wanted.band.from) * depth, float(wanted.band.to) * depth],
@@ -217,5 +227,5 @@ fn picture(summary: &CompareSummary, walls: &[(&str, &Walls)]) -> Result<Vec<u8>
     };
     let laws = walls.iter().map(|(name, walls)| law(name, walls)).collect();
     let compared = Compared { on_plant: summary.machine == "plant", trim_mm: summary.trim_mm, laws };
-    plot::compare(&View::default(), &compared)
+    plot::compare(&View::in_unit(summary.unit), &compared)
 }

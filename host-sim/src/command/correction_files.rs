@@ -73,7 +73,7 @@ pub(super) fn write_contour(
     write("correction.csv", &correction_csv(&done.rows)?)?;
     write("wall.csv", &wall_csv(&done.rows)?)?;
     write("points.csv", &points_csv(measurement, &done.identified.observations)?)?;
-    write("correction.svg", &predicted_error(&View::default(), &done.rows, &[])?)?;
+    write("correction.svg", &predicted_error(&View::in_unit(done.summary.unit), &done.rows, &[])?)?;
     if let Some(history) = history {
         write(HISTORY, &history.text()?)?;
     }

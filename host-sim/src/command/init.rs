@@ -9,6 +9,7 @@ use truepath_ground::codes::C001;
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{Failure, InputError, Source, visible};
 use truepath_ground::document;
+use truepath_ground::length::Unit;
 use truepath_ground::output::OutputFile;
 use truepath_ground::units::mm;
 use truepath_job::codes::J042;
@@ -70,6 +71,9 @@ const TOP: [&str; 5] = ["dialect", "decimal", "arc_centres", "wall", "contour"];
 struct Report {
     /// The job file.
     job: PathBuf,
+    /// The unit of the program, in which people are told.
+    #[serde(skip)]
+    unit: Unit,
     /// Every key in it, and what was left out, with where it comes from.
     keys: Vec<Entry>,
     /// Finishing contours of the program.
@@ -173,13 +177,13 @@ fn run(options: &Options, terminal: &Terminal) -> Result<Report, Failure> {
         None => " --dialect haas|fanuc|linuxcnc|grbl",
     };
     let next = format!("truepath probe {}{dialect} -o verify.nc", options.output.display());
-    let Draft { entries, contours, chosen, facts, mut warnings, .. } = draft;
+    let Draft { unit, entries, contours, chosen, facts, mut warnings, .. } = draft;
     for said in passes.into_iter().flat_map(|pass| pass.warnings) {
         if !said.starts_with("assumed ") && !warnings.contains(&said) {
             warnings.push(said);
         }
     }
-    Ok(Report { job: options.output.clone(), keys: entries, contours, contour: chosen, facts, next, warnings })
+    Ok(Report { job: options.output.clone(), unit, keys: entries, contours, contour: chosen, facts, next, warnings })
 }
 
 /// What `--set` says, by the keys of the job.
@@ -232,7 +236,9 @@ fn short(key: &str) -> String {
 fn questions(draft: &Draft, given: &BTreeMap<String, String>) -> Vec<Question> {
     let mut list: Vec<Question> = Vec::new();
     if draft.contours.len() > 1 && !given.contains_key("contour") {
-        let one = |c: &ContourNote| format!("\n  {}: lines {}-{}, {}", c.number, c.first_line, c.last_line, c.words());
+        let one = |c: &ContourNote| {
+            format!("\n  {}: lines {}-{}, {}", c.number, c.first_line, c.last_line, c.words(draft.unit))
+        };
         let rows: String = draft.contours.iter().map(one).collect();
         let text = format!("The program makes {} walls. Which one is this job about?{rows}", draft.contours.len());
         let proposal = Some(draft.chosen.map_or_else(|| "all".to_owned(), |number| number.to_string()));
@@ -337,19 +343,31 @@ fn visible_text(text: &str) -> String {
     text.lines().map(|line| visible(line).into_owned()).collect::<Vec<_>>().join("\n")
 }
 
+/// A key with its table, and its value, as they stand in the job.
+fn in_file(entry: &Entry, unit: Unit) -> (String, String) {
+    let (table, _) = entry.place();
+    let (key, value) = entry.in_unit(unit);
+    (if table.is_empty() { key } else { format!("{table}.{key}") }, value)
+}
+
 fn words(report: &Report) -> String {
     let mut text: String = report.facts.iter().map(|fact| format!("{fact}\n")).collect();
     text.push('\n');
     for entry in &report.keys {
+        let (key, value) = in_file(entry, report.unit);
         let value = match entry.origin {
             Origin::Fixed => continue,
             Origin::Left => "-",
-            _ => &entry.value,
+            _ => &value,
         };
-        text += &format!("{:<28} {value:<12} {}\n", entry.key, entry.reason());
+        text += &format!("{key:<28} {value:<12} {}\n", entry.reason());
     }
-    let check: Vec<&str> =
-        report.keys.iter().filter(|e| e.check && e.origin != Origin::Given).map(|e| e.key.as_str()).collect();
+    let check: Vec<String> = report
+        .keys
+        .iter()
+        .filter(|e| e.check && e.origin != Origin::Given)
+        .map(|e| in_file(e, report.unit).0)
+        .collect();
     if !check.is_empty() {
         text += &format!("\nplease check before metal is cut: {}\n", check.join(", "));
     }

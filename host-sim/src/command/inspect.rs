@@ -12,6 +12,7 @@ use truepath_correction::misfit::noticed;
 use truepath_correction::remarks::said_of_every;
 use truepath_correction::warnings::misread;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Unit;
 use truepath_ground::output::{OutputFolder, json, write_file};
 use truepath_ground::units::mm;
 use truepath_job::feature::listing;
@@ -20,7 +21,9 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::page::render_all;
 use truepath_report::pages::{self, REPORT};
-use truepath_report::{InspectSummary, QifWall, aqdef, inspect_summary, judged_points_csv, points_csv, qif};
+use truepath_report::{
+    InspectSummary, QifWall, aqdef, inspect_summary, judged_points_csv, points_csv, qif, statements,
+};
 
 use super::correction_files::{CONTOURS, contour_name, contour_place};
 use super::readings::{DIMENSIONS, PROBE, Readings};
@@ -57,9 +60,15 @@ pub struct Inspection {
     pub summary: InspectSummary,
     /// Every contact, in the order of the contour.
     pub contacts: Vec<Point>,
-    /// Decimals of a millimetre with which deviations are told in words.
+    /// The unit in which people are told: that of the program.
+    #[serde(skip)]
+    pub unit: Unit,
+    /// Decimals with which deviations are told in words, as those of a millimetre.
     #[serde(skip)]
     pub decimals: usize,
+    /// What is said of the part, in that unit: the verdict, and what it rests on.
+    #[serde(skip)]
+    pub said: (String, Vec<String>),
 }
 
 /// Files this command may write.
@@ -107,9 +116,10 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
 }
 
 fn words(inspection: &Inspection) -> String {
-    let mut text = inspection.summary.feature.as_ref().map(listing).unwrap_or_default();
+    let (unit, name) = (inspection.unit, inspection.unit.name());
+    let mut text = inspection.summary.feature.as_ref().map(|feature| listing(feature, unit)).unwrap_or_default();
     let judged = inspection.summary.tolerance.is_some();
-    text.push_str("  line     s mm       X mm       Y mm   height mm   error mm");
+    text += &format!("  line     s {name}       X {name}       Y {name}   height {name}   error {name}");
     text.push_str(if judged { "  verdict\n" } else { "\n" });
     let mut contour = None;
     for p in &inspection.contacts {
@@ -120,35 +130,36 @@ fn words(inspection: &Inspection) -> String {
         text += &format!(
             "{:>6} {:>8.2} {:>10.4} {:>10.4} {:>11.3} {:>10.*}{}\n",
             p.line,
-            p.s_mm,
-            p.x_mm,
-            p.y_mm,
-            p.height_mm,
+            unit.of(p.s_mm),
+            unit.of(p.x_mm),
+            unit.of(p.y_mm),
+            unit.of(p.height_mm),
             inspection.decimals,
-            p.error_mm,
+            unit.of(p.error_mm),
             p.verdict.map_or("", word)
         );
     }
     let s = &inspection.summary;
     text += &format!(
-        "\n{} points; material left is positive\nmean {:.4} mm (a wear offset removes it), largest {:.d$}, smallest {:.d$}, rms {:.4}, spread over height {:.4} mm\n",
+        "\n{} points; material left is positive\nmean {:.4} {name} (a wear offset removes it), largest {:.d$}, smallest {:.d$}, rms {:.4}, spread over height {:.4} {name}\n",
         s.points,
-        s.mean_error_mm,
-        s.max_error_mm,
-        s.min_error_mm,
-        s.rms_error_mm,
-        s.spread_over_height_mm,
+        unit.of(s.mean_error_mm),
+        unit.of(s.max_error_mm),
+        unit.of(s.min_error_mm),
+        unit.of(s.rms_error_mm),
+        unit.of(s.spread_over_height_mm),
         d = inspection.decimals
     );
     let wall = &s.surface;
     text += &format!(
-        "{} (2 sigma); 95 % of the points within {:.4} mm\nthe worst {}\n",
-        wall.words(),
-        wall.p95_mm,
-        wall.worst_words()
+        "{} (2 sigma); 95 % of the points within {:.4} {name}\nthe worst {}\n",
+        wall.words(unit),
+        unit.of(wall.p95_mm),
+        wall.worst_words(unit)
     );
-    text += &s.statements.join("\n");
-    text + &format!("\nverdict: {}\n", s.verdict.text)
+    let (verdict, statements) = &inspection.said;
+    text += &statements.join("\n");
+    text + &format!("\nverdict: {verdict}\n")
 }
 
 const fn word(verdict: PointVerdict) -> &'static str {
@@ -221,6 +232,8 @@ struct Inspected<'a> {
     rule: Option<Rule>,
     aside: SetAside,
     judgement: Judgement,
+    /// The same in the unit of the program.
+    in_unit: Judgement,
     summary: InspectSummary,
     /// Warnings without one for every reading set aside.
     told: Vec<String>,
@@ -246,7 +259,9 @@ fn one<'a>(pass: &'a Pass, measurement: &'a Measurement, several: bool) -> Resul
     let coverage = coverage(&places, wall, reach);
     let deviations: Vec<Offset> = measurement.contacts.iter().map(|c| c.error).collect();
     let aside = SetAside::of(measurement.rejected.iter().map(|r| &r.reason), pass.job.numbers.tool.diameter);
-    let judgement = judge(rule, &deviations, aside, &coverage);
+    // Files and page are in millimetres.
+    let judged = |unit| judge(rule, &deviations, aside, &coverage, unit);
+    let (judgement, in_unit) = (judged(Unit::Millimetre), judged(pass.unit()));
     let name = several.then(|| contour_name(pass));
     let contacts = measurement.contacts.iter().enumerate().map(|(at, c)| Point {
         contour: name.clone(),
@@ -261,7 +276,7 @@ fn one<'a>(pass: &'a Pass, measurement: &'a Measurement, several: bool) -> Resul
     let contacts = contacts.collect();
     let summary = inspect_summary(pass, measurement, &judgement, coverage, warnings);
     let summary = InspectSummary { contour: name, ..summary };
-    Ok(Inspected { pass, measurement, rule, aside, judgement, summary, told, contacts })
+    Ok(Inspected { pass, measurement, rule, aside, judgement, in_unit, summary, told, contacts })
 }
 
 /// The inspection as a QIF document.
@@ -280,7 +295,10 @@ fn together(inspected: &[Inspected<'_>], measured: &[(Pass, Measurement)]) -> Re
     let nothing = || Failure::Internal("no wall was inspected".to_owned());
     if let ([one], [_]) = (inspected, measured) {
         let (summary, contacts) = (one.summary.clone(), one.contacts.clone());
-        return Ok(Inspection { contacts, summary, decimals: one.judgement.decimals });
+        let unit = one.pass.unit();
+        let statements = statements(&one.in_unit, &summary.surface, summary.feature.as_ref(), unit);
+        let told = Judgement { statements, ..one.in_unit.clone() };
+        return Ok(inspection(summary, contacts, unit, told));
     }
     let rule = inspected.first().and_then(|wall| wall.rule);
     let deviations: Vec<Offset> =
@@ -302,9 +320,17 @@ fn together(inspected: &[Inspected<'_>], measured: &[(Pass, Measurement)]) -> Re
     }
     warnings.extend(said_of_every(all_said.iter().map(|(name, said)| (name.as_str(), &said[..]))));
     let walls: Vec<NamedWall<'_>> = walls.iter().map(|(name, coverage)| (name.as_str(), *coverage)).collect();
-    let judgement = judge_every(rule, &deviations, aside, &walls);
+    let unit = measured.first().map(|(pass, _)| pass.unit()).unwrap_or_default();
+    let judged = |unit| judge_every(rule, &deviations, aside, &walls, unit);
+    let judgement = judged(Unit::Millimetre);
     let contacts = inspected.iter().flat_map(|wall| wall.contacts.clone()).collect();
     let contours = inspected.iter().map(|wall| wall.summary.clone()).collect();
     let summary = InspectSummary::of_every(contours, &judgement, warnings).ok_or_else(nothing)?;
-    Ok(Inspection { contacts, summary, decimals: judgement.decimals })
+    Ok(inspection(summary, contacts, unit, judged(unit)))
+}
+
+/// The report, with what is told to people in a unit.
+fn inspection(summary: InspectSummary, contacts: Vec<Point>, unit: Unit, told: Judgement) -> Inspection {
+    let Judgement { verdict, statements, decimals, .. } = told;
+    Inspection { summary, contacts, unit, decimals, said: (verdict.text, statements) }
 }

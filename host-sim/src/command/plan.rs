@@ -16,6 +16,7 @@ use truepath_correction::verification::{self, ProbeDialect, Settings, plan_every
 use truepath_ground::codes::{C001, J004, J008};
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::length::Unit;
 use truepath_ground::limits::Limits;
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::{float, mm};
@@ -78,6 +79,9 @@ pub struct Options {
 pub struct PlanSummary {
     /// Version of this file.
     pub version: u32,
+    /// The unit of the program, in which people are told.
+    #[serde(skip)]
+    pub unit: Unit,
     /// The plan, where one contour is planned.
     #[serde(flatten)]
     pub plan: Option<Plan>,
@@ -174,10 +178,12 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
 }
 
 fn words(summary: &PlanSummary) -> String {
-    let mut text = summary.plan.iter().map(table).collect::<String>();
+    let unit = summary.unit;
+    let mut text = summary.plan.iter().map(|plan| table(plan, unit)).collect::<String>();
     for one in &summary.contours {
         let depths = if one.depths > 1 { format!(", {} depths", one.depths) } else { String::new() };
-        text += &format!("{} (lines {}-{}{depths})\n{}\n", one.contour, one.lines[0], one.lines[1], table(&one.plan));
+        text +=
+            &format!("{} (lines {}-{}{depths})\n{}\n", one.contour, one.lines[0], one.lines[1], table(&one.plan, unit));
     }
     text += &together(&summary.contours);
     match &summary.written {
@@ -213,17 +219,17 @@ fn words(summary: &PlanSummary) -> String {
 }
 
 /// The choices for a contour.
-fn table(plan: &Plan) -> String {
-    let um = |mm: f64| mm * 1e3;
+fn table(plan: &Plan, unit: Unit) -> String {
+    let (small, um) = (|mm: f64| unit.small(mm), unit.small_name());
     let mut text = format!(
-        "as programmed: {:.1} um at the worst place of the wall (mean over the height {:.1} um), {:.2} min\n\
-         wanted: {:.1} um at every height, with {:.0} %\n\n\
+        "as programmed: {:.1} {um} at the worst place of the wall (mean over the height {:.1} {um}), {:.2} min\n\
+         wanted: {:.1} {um} at every height, with {:.0} %\n\n\
          \x20      time     profile error   95 % of it   within   passes\n\
-         \x20      ratio    um, 2 sigma     um\n",
-        um(plan.as_programmed.profile_mm),
-        um(plan.as_programmed.mean_mm),
+         \x20      ratio    {um}, 2 sigma     {um}\n",
+        small(plan.as_programmed.profile_mm),
+        small(plan.as_programmed.mean_mm),
         plan.minutes,
-        um(plan.tolerance_mm),
+        small(plan.tolerance_mm),
         plan.confidence * 100.0
     );
     for (k, choice) in plan.choices.iter().enumerate() {
@@ -232,11 +238,11 @@ fn table(plan: &Plan) -> String {
             "{mark} {}  {:>6.2}  {:>7.1} ± {:<6.1} {:>6.1} {:>10.0} %   {}; most of it {}\n",
             k + 1,
             choice.time_ratio,
-            um(choice.surface.profile.profile_mm),
-            um(2.0 * choice.surface.profile.sigma_mm),
-            um(choice.surface.p95_mm),
+            small(choice.surface.profile.profile_mm),
+            small(2.0 * choice.surface.profile.sigma_mm),
+            small(choice.surface.p95_mm),
             choice.within_tolerance * 100.0,
-            choice.process,
+            choice.process_in(unit),
             choice.limited_by,
         );
     }
@@ -245,16 +251,16 @@ fn table(plan: &Plan) -> String {
         (None, Some(best)) => {
             let needed = best.surface.profile.profile_mm + 2.0 * best.surface.profile.sigma_mm;
             format!(
-                "\nnone holds it: the best is expected within {:.1} um with 2 sigma, {:.1} um beyond the tolerance\n",
-                um(needed),
-                um((needed - plan.tolerance_mm).max(0.0))
+                "\nnone holds it: the best is expected within {:.1} {um} with 2 sigma, {:.1} {um} beyond the tolerance\n",
+                small(needed),
+                small((needed - plan.tolerance_mm).max(0.0))
             )
         }
         (None, None) => "\nno process keeps the limits of [plan]\n".to_owned(),
     };
     let number = plan.recommended.unwrap_or(plan.choices.len());
     if let Some(choice) = plan.choices.get(number.wrapping_sub(1)) {
-        text += &format!("  what is left of choice {number}, {}\n", choice.surface.worst_words());
+        text += &format!("  what is left of choice {number}, {}\n", choice.surface.worst_words(unit));
     }
     text
 }
@@ -465,6 +471,7 @@ fn summary(
     written: Option<Written>,
     warnings: Vec<String>,
 ) -> PlanSummary {
+    let unit = measured.first().map(|(pass, _)| pass.unit()).unwrap_or_default();
     let plan = if several { None } else { plans.pop() };
     let of = |((pass, _), plan): (&(Pass, Measurement), Plan)| ContourPlan {
         contour: contour_name(pass),
@@ -472,7 +479,7 @@ fn summary(
         depths: pass.plan.as_ref().map_or(1, |plan| plan.levels().len()),
         plan,
     };
-    PlanSummary { version: 1, plan, contours: measured.iter().zip(plans).map(of).collect(), written, warnings }
+    PlanSummary { version: 1, unit, plan, contours: measured.iter().zip(plans).map(of).collect(), written, warnings }
 }
 
 /// The program's own name beside [`PROGRAM`].

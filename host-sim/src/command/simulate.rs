@@ -119,56 +119,63 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
 }
 
 fn words(summary: &SimulateSummary, output: &FilePath) -> String {
+    let (unit, mm) = (summary.unit, summary.unit.name());
     let cut = summary.recorded.as_ref().map_or_else(String::new, |facts| {
         format!(
-            "recorded from {:.3} to {:.3} s, at most {:.4} mm from the program's path, feed {:.0} to {:.0} %\n",
+            "recorded from {:.3} to {:.3} s, at most {:.4} {mm} from the program's path, feed {:.0} to {:.0} %\n",
             facts.from_s,
             facts.to_s,
-            facts.farthest_mm,
+            unit.of(facts.farthest_mm),
             100.0 * facts.least_feed,
             100.0 * facts.greatest_feed
         )
     });
     let judged = summary.judged.map_or_else(String::new, |score| {
-        format!("away from the ends: largest wall error {:.4} mm (rms {:.4})\n", score.max_error_mm, score.rms_error_mm)
+        format!(
+            "away from the ends: largest wall error {:.4} {mm} (rms {:.4})\n",
+            unit.of(score.max_error_mm),
+            unit.of(score.rms_error_mm)
+        )
     });
     let contours = summary.contours.iter().map(|one| {
         let name = one.contour.as_deref().unwrap_or_default();
         format!(
-            "{name}: {:.1} mm, largest wall error {:.4} mm (rms {:.4})\n",
-            one.length_mm, one.max_error_mm, one.rms_error_mm
+            "{name}: {:.1} {mm}, largest wall error {:.4} {mm} (rms {:.4})\n",
+            unit.of(one.length_mm),
+            unit.of(one.max_error_mm),
+            unit.of(one.rms_error_mm)
         )
     });
     let contours: String = contours.collect();
     let laps = summary.laps.iter().enumerate().map(|(k, lap)| {
         format!(
-            "lap {}: tip at Z {:.3} mm, {}{}, {:.3} mm beside the contour, {:.1} mm long, largest mean force {:.0} N\n",
+            "lap {}: tip at Z {:.3} {mm}, {}{}, {:.3} {mm} beside the contour, {:.1} {mm} long, largest mean force {:.0} N\n",
             k + 1,
-            lap.tip_z_mm,
+            unit.of(lap.tip_z_mm),
             if lap.climb { "climb" } else { "conventional" },
             if lap.reversed { ", reversed" } else { "" },
-            lap.beside_mm,
-            lap.length_mm,
+            unit.of(lap.beside_mm),
+            unit.of(lap.length_mm),
             lap.largest_force_n
         )
     });
     let laps: String = laps.collect();
     let surface = summary.surface.as_ref().map_or_else(String::new, |all| {
         format!(
-            "at every height: profile error {:.4} mm (at s {:.1}, Z {:.2} mm), 95 % within {:.4} mm, deepest gouge {:.4} mm\n",
-            all.profile_mm, all.worst.s_mm, all.worst.z_mm, all.p95_mm, all.gouge_mm
+            "at every height: profile error {:.4} {mm} (at s {:.1}, Z {:.2} {mm}), 95 % within {:.4} {mm}, deepest gouge {:.4} {mm}\n",
+            unit.of(all.profile_mm), unit.of(all.worst.s_mm), unit.of(all.worst.z_mm), unit.of(all.p95_mm), unit.of(all.gouge_mm)
         )
     });
     format!(
-        "{contours}{}{:.1} mm of contour, {} milling, by the {}\n\
-         largest wall error {:.4} mm (rms {:.4}), largest engagement {:.2} degrees, largest mean force {:.0} N\n\
+        "{contours}{}{:.1} {mm} of contour, {} milling, by the {}\n\
+         largest wall error {:.4} {mm} (rms {:.4}), largest engagement {:.2} degrees, largest mean force {:.0} N\n\
          {judged}{surface}{laps}{cut}written to {}; to look at: {}\n",
-        summary.feature.as_ref().map(listing).unwrap_or_default(),
-        summary.length_mm,
+        summary.feature.as_ref().map(|feature| listing(feature, unit)).unwrap_or_default(),
+        unit.of(summary.length_mm),
         summary.milling,
         summary.by,
-        summary.max_error_mm,
-        summary.rms_error_mm,
+        unit.of(summary.max_error_mm),
+        unit.of(summary.rms_error_mm),
         summary.max_arc_deg,
         summary.max_force_n,
         output.display(),
@@ -239,7 +246,7 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
         }
         write("trace.csv", &trace_csv(&done.trace)?)?;
         write("wall.csv", &wall_csv(&done.trace)?)?;
-        write("trace.svg", &plot::trace(&View::default(), &[("", &done.trace)], &Column::USUAL)?)?;
+        write("trace.svg", &plot::trace(&View::in_unit(pass.unit()), &[("", &done.trace)], &Column::USUAL)?)?;
         if several {
             write("summary.json", &json(&summary)?)?;
         }

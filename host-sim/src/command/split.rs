@@ -12,6 +12,7 @@ use truepath_core::units::Offset;
 use truepath_correction::first_pass;
 use truepath_ground::codes::J008;
 use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::length::Unit;
 use truepath_ground::output::OutputFolder;
 use truepath_ground::units::mm;
 use truepath_job::job::JobFile;
@@ -45,6 +46,9 @@ pub struct Options {
 /// What was written.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Split {
+    /// The unit of the program, in which people are told.
+    #[serde(skip)]
+    pub unit: Unit,
     /// The program to mill first.
     pub program: PathBuf,
     /// Its job.
@@ -67,13 +71,16 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
 fn words(split: &Split, job: &FilePath) -> String {
     let (program, first, job) = (split.program.display(), split.job.display(), job.display());
     format!(
-        "{program}: the contour {:.3} mm away from the wall in {} moves; the second pass takes the other {:.3} mm\n\
+        "{program}: the contour {:.3} {name} away from the wall in {} moves; the second pass takes the other {:.3} {name}\n\
          next:\n\
          1. mill {program} and leave the part clamped\n\
          2. probe its wall: truepath probe {first} ..., or your own probing routine\n\
          3. truepath correct {job} --first-pass {first} --probe FILE -o DIR\n\
          4. mill the corrected program\n",
-        split.allowance_mm, split.moves, split.allowance_mm
+        split.unit.of(split.allowance_mm),
+        split.moves,
+        split.unit.of(split.allowance_mm),
+        name = split.unit.name()
     )
 }
 
@@ -113,6 +120,7 @@ pub fn run(options: &Options) -> Result<Split, Failure> {
     )?;
     folder.commit()?;
     Ok(Split {
+        unit: pass.unit(),
         program: options.output.join(PROGRAM),
         job: options.output.join(JOB),
         allowance_mm: mm(half),

@@ -7,6 +7,7 @@ use truepath::command::batch::{self, Options};
 use truepath::command::correct;
 use truepath_batch::batch::{Alarm, Cause};
 use truepath_ground::diagnostics::{Failure, Form, Source};
+use truepath_ground::length::Unit;
 use truepath_job::job::JobFile;
 use truepath_job::pass::Pass;
 use truepath_trial::virtual_mill;
@@ -98,7 +99,7 @@ fn a_harder_lot_is_noticed_on_its_first_part_and_a_told_one_is_none() {
     let stepped = shown(batch::run(&options(folder.path(), &table(""))));
     let file = folder.path().join("batch/summary.json");
     let read = truepath_publish::summary::Summary::parse(&fs::read(&file).unwrap(), &file).unwrap();
-    let words = |alarms: &[Alarm]| alarms.iter().map(Alarm::words).collect::<Vec<_>>();
+    let words = |alarms: &[Alarm]| alarms.iter().map(|alarm| alarm.words(Unit::Millimetre)).collect::<Vec<_>>();
     assert_eq!((words(&read.alarms), &read.next), (words(&stepped.batch.alarms), &stepped.next));
     assert!(read.next.as_ref().is_some_and(|next| next.contains("another lot")) && read.is_pushed());
     let worst = |state: &truepath_batch::batch::State| state.worst.as_ref().map(|worst| worst.error_mm);

@@ -7,6 +7,7 @@ use truepath::command::{correct, inspect, simulate};
 use truepath_core::image::{DeviceClass, Image, KeyRing, verify};
 use truepath_correction::correct::{CorrectedPass, correct_pass};
 use truepath_ground::diagnostics::{Failure, Form, InputError, Source};
+use truepath_ground::length::Unit;
 use truepath_job::job::{JobFile, Route, Which};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
@@ -125,7 +126,7 @@ fn what_is_chosen_is_told_with_its_reasons() {
         feature.passes.iter().map(|p| (p.pass, p.role)).collect::<Vec<_>>(),
         [(1, "finish"), (2, "finish"), (2, "spring")]
     );
-    let text = truepath_job::feature::listing(&feature);
+    let text = truepath_job::feature::listing(&feature, Unit::Millimetre);
     assert!(text.contains("by search: the only path of tool 1"), "{text}");
     assert!(text.contains("0.500 mm all along farther from the wall than lines 71-79"), "{text}");
     assert!(pass.warnings.iter().all(|w| !w.contains("leaves")), "{:?}", pass.warnings);

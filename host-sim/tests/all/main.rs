@@ -8,6 +8,7 @@ mod dimensions;
 mod features;
 mod fillet;
 mod forces_command;
+mod inches;
 mod init;
 mod inspection;
 mod learn_refused;

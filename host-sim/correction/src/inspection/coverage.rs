@@ -14,6 +14,7 @@
 use std::collections::BTreeMap;
 
 use truepath_core::units::Offset;
+use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 
 /// A stretch of the contour, or of the height of its wall.
@@ -128,15 +129,20 @@ pub(super) const NAMED: usize = 6;
 
 impl Coverage {
     /// What it means for the verdict along the contour, in words; [`Face::words`] has the height.
-    pub fn words(&self) -> String {
-        let Self { reach_mm, length_mm, farther_mm, stretches, .. } = self;
+    pub fn words(&self, unit: Unit) -> String {
+        let Self { stretches, .. } = self;
+        let [reach, length, farther] = [self.reach_mm, self.length_mm, self.farther_mm].map(|mm| unit.of(mm));
+        let name = unit.name();
         if stretches.is_empty() {
             return format!(
-                "Every place of the contour ({length_mm:.1} mm) lies within {reach_mm} mm of a measured one."
+                "Every place of the contour ({length:.1} {name}) lies within {reach} {name} of a measured one."
             );
         }
-        let named: Vec<String> =
-            stretches.iter().take(NAMED).map(|s| format!("{:.1} to {:.1}", s.from_mm, s.to_mm)).collect();
+        let named: Vec<String> = stretches
+            .iter()
+            .take(NAMED)
+            .map(|s| format!("{:.1} to {:.1}", unit.of(s.from_mm), unit.of(s.to_mm)))
+            .collect();
         let more = stretches.len().saturating_sub(NAMED);
         let more = match more {
             0 => String::new(),
@@ -144,7 +150,7 @@ impl Coverage {
             more => format!(", and {more} more stretches"),
         };
         format!(
-            "{farther_mm:.1} of {length_mm:.1} mm of the contour lie farther than {reach_mm} mm from any measured place: s = {} mm{more}.",
+            "{farther:.1} of {length:.1} {name} of the contour lie farther than {reach} {name} from any measured place: s = {} {name}{more}.",
             named.join(", ")
         )
     }
@@ -253,10 +259,11 @@ impl Face {
     }
 
     /// What it means for the verdict, in words, for a contour of a length.
-    pub fn words(&self, length_mm: f64) -> String {
+    pub fn words(&self, unit: Unit, length_mm: f64) -> String {
         let Self { depth_mm, reach_mm, touched, open_percent, layers } = self;
+        let name = unit.name();
         let decimals = if *depth_mm < 3.0 { 2 } else { 1 };
-        let told = |mm: f64| format!("{mm:.decimals$}");
+        let told = |mm: f64| format!("{:.decimals$}", unit.of(mm));
         let span = |s: &Stretch| match (told(s.from_mm), told(s.to_mm)) {
             (from, to) if from == to => from,
             (from, to) => format!("{from} to {to}"),
@@ -273,11 +280,12 @@ impl Face {
         let heights = if touched.is_empty() {
             "No height of the wall was touched".to_owned()
         } else {
-            format!("Touched at heights of {} mm above the cutter's tip", listed(touched))
+            format!("Touched at heights of {} {name} above the cutter's tip", listed(touched))
         };
         let all = format!(
-            "{heights}; the wall is {} mm high, and a point speaks for {reach_mm} mm up and down",
-            told(*depth_mm)
+            "{heights}; the wall is {} {name} high, and a point speaks for {} {name} up and down",
+            told(*depth_mm),
+            unit.of(*reach_mm)
         );
         let same_over_all = |l: &Layer| l.from_mm <= 0.0 && l.to_mm >= *depth_mm;
         if !touched.is_empty() && layers.iter().all(same_over_all) && !layers.is_empty() {
@@ -294,7 +302,7 @@ impl Face {
         let nowhere = self.untouched(length_mm);
         let nowhere = match nowhere.as_slice() {
             [] => String::new(),
-            some => format!("nothing is known of the wall at heights of {} mm, ", listed(some)),
+            some => format!("nothing is known of the wall at heights of {} {name}, ", listed(some)),
         };
         format!(
             "{all}: {nowhere}{share} of the wall's surface {} farther from every measured place.",
@@ -332,7 +340,7 @@ mod tests_over_the_height {
         let one = of(&[(50, 60)], false);
         assert_eq!(layers(&one), [(0.0, 3.0, vec![(0.0, 100.0)]), (9.0, 12.0, vec![(0.0, 100.0)])]);
         assert_eq!(one.open_percent, 50.0);
-        let said = one.words(100.0);
+        let said = one.words(Unit::Millimetre, 100.0);
         assert!(
             said.contains("heights of 6.0 mm above")
                 && said.contains("heights of 0.0 to 3.0 and 9.0 to 12.0 mm, 50 % of"),
@@ -340,7 +348,7 @@ mod tests_over_the_height {
         );
         let three = of(&[(50, 12), (50, 60), (50, 108)], false);
         assert_eq!((three.layers.len(), three.open_percent), (0, 0.0));
-        let said = three.words(100.0);
+        let said = three.words(Unit::Millimetre, 100.0);
         assert!(
             said.contains("1.2, 6.0 and 10.8 mm")
                 && said.ends_with("no place of the wall lies farther from a measured one."),
@@ -357,17 +365,17 @@ mod tests_over_the_height {
         assert_eq!(found.open_percent, 25.0);
         assert!(
             found
-                .words(100.0)
+                .words(Unit::Millimetre, 100.0)
                 .ends_with("up and down: 25 % of the wall's surface lies farther from every measured place."),
             "{}",
-            found.words(100.0)
+            found.words(Unit::Millimetre, 100.0)
         );
         // What is open along the contour is not told again.
         let near = of(&[(0, 12), (0, 60), (0, 108)], false);
         assert!(
-            near.words(100.0).ends_with("where the wall was touched, it was over its whole height."),
+            near.words(Unit::Millimetre, 100.0).ends_with("where the wall was touched, it was over its whole height."),
             "{}",
-            near.words(100.0)
+            near.words(Unit::Millimetre, 100.0)
         );
         // On a closed contour the touches at the seam speak for both ends.
         assert_eq!(of(&[(0, 12), (0, 60), (0, 108)], true).open_percent, 0.0);
@@ -418,7 +426,7 @@ mod tests_over_the_height {
             Reach { along: Offset::ZERO, height: Offset::ZERO },
         );
         assert_eq!((none.layers.len(), none.open_percent), (0, 0.0));
-        assert!(of(&[], false).words(100.0).starts_with("No height of the wall was touched"));
+        assert!(of(&[], false).words(Unit::Millimetre, 100.0).starts_with("No height of the wall was touched"));
         assert_eq!(of(&[], false).open_percent, 100.0);
     }
 }
@@ -467,9 +475,10 @@ mod tests {
         let found = coverage(&far, Extent { length: um(19_000_000), depth: um(10_000), closed: false }, REACH);
         assert_eq!(found.stretches.len(), 19);
         assert!(
-            found.words().contains("10.0 to 990.0") && found.words().contains("mm, and 13 more stretches."),
+            found.words(Unit::Millimetre).contains("10.0 to 990.0")
+                && found.words(Unit::Millimetre).contains("mm, and 13 more stretches."),
             "{}",
-            found.words()
+            found.words(Unit::Millimetre)
         );
     }
 }

@@ -1,6 +1,7 @@
 //! The verdict about a part: from its points, and in words that say what it rests on.
 
 use truepath_core::units::Offset;
+use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 
 use super::coverage::Coverage;
@@ -48,29 +49,37 @@ pub struct Judgement {
     pub points: Vec<PointVerdict>,
     /// How many are what; absent without limits.
     pub count: Option<Count>,
-    /// Decimals of a millimetre with which the deviations are told.
+    /// Decimals with which the deviations are told, as those of a millimetre.
     pub decimals: usize,
     /// Sentences for the report: decision rule, what the verdict holds for, what no point speaks for.
     pub statements: Vec<String>,
 }
 
-/// Judges a part by one wall. Readings `aside` were not judged; those that may be of its wall keep it from passing.
-pub fn judge(rule: Option<Rule>, deviations: &[Offset], aside: SetAside, coverage: &Coverage) -> Judgement {
-    let mut judgement = judge_points(rule, deviations, aside);
-    judgement.statements.push(coverage.words());
-    judgement.statements.push(coverage.face.words(coverage.length_mm));
+/// Judges a part by one wall, and says it in a unit. Readings `aside` were not judged; those that may be of its wall keep it from passing.
+pub fn judge(rule: Option<Rule>, deviations: &[Offset], aside: SetAside, coverage: &Coverage, unit: Unit) -> Judgement {
+    let mut judgement = judge_points(rule, deviations, aside, unit);
+    judgement.statements.push(coverage.words(unit));
+    judgement.statements.push(coverage.face.words(unit, coverage.length_mm));
     judgement
 }
 
 /// One of several walls of a part: its name, and what no point speaks for; `None` where it was not touched.
 pub type NamedWall<'a> = (&'a str, Option<&'a Coverage>);
 
-/// Judges a part by several walls, of whose points `deviations` are all. It does not pass while one of them is not touched.
-pub fn judge_every(rule: Option<Rule>, deviations: &[Offset], aside: SetAside, walls: &[NamedWall<'_>]) -> Judgement {
-    let mut judgement = judge_points(rule, deviations, aside);
+/// Judges a part by several walls, in a unit, of whose points `deviations` are all. It does not pass while one of them is not touched.
+pub fn judge_every(
+    rule: Option<Rule>,
+    deviations: &[Offset],
+    aside: SetAside,
+    walls: &[NamedWall<'_>],
+    unit: Unit,
+) -> Judgement {
+    let mut judgement = judge_points(rule, deviations, aside, unit);
     for (name, coverage) in walls {
         judgement.statements.push(match coverage {
-            Some(coverage) => format!("{name}: {} {}", coverage.words(), coverage.face.words(coverage.length_mm)),
+            Some(coverage) => {
+                format!("{name}: {} {}", coverage.words(unit), coverage.face.words(unit, coverage.length_mm))
+            }
             None => format!("{name}: not touched, nothing is said of it."),
         });
     }
@@ -84,7 +93,7 @@ pub fn judge_every(rule: Option<Rule>, deviations: &[Offset], aside: SetAside, w
 }
 
 /// What the points say, and what they rest on.
-fn judge_points(rule: Option<Rule>, deviations: &[Offset], aside: SetAside) -> Judgement {
+fn judge_points(rule: Option<Rule>, deviations: &[Offset], aside: SetAside, unit: Unit) -> Judgement {
     let points: Vec<PointVerdict> = rule.iter().flat_map(|rule| deviations.iter().map(|d| rule.point(*d))).collect();
     let of = |verdict| points.iter().filter(|p| **p == verdict).count();
     let count = rule.map(|_| Count {
@@ -93,10 +102,10 @@ fn judge_points(rule: Option<Rule>, deviations: &[Offset], aside: SetAside) -> J
         open: of(PointVerdict::Open),
     });
     let verdict = match (rule, count) {
-        (Some(rule), Some(count)) => verdict(&rule, count, deviations, aside),
+        (Some(rule), Some(count)) => verdict(&rule, count, deviations, aside, unit),
         _ => Verdict { state: State::Open, text: "open: no tolerance given".to_owned() },
     };
-    let mut statements: Vec<String> = rule.iter().map(Rule::words).collect();
+    let mut statements: Vec<String> = rule.iter().map(|rule| rule.words(unit)).collect();
     if rule.is_some_and(|rule| rule.proves_nothing()) {
         statements.push(
             "The uncertainty is more than half the width of the tolerance: no point can be proven within it."
@@ -117,30 +126,30 @@ fn judge_points(rule: Option<Rule>, deviations: &[Offset], aside: SetAside) -> J
                 .to_owned(),
         );
     }
-    let decimals = rule.map_or(4, |rule| rule.decimals(deviations));
+    let decimals = rule.map_or(4, |rule| rule.decimals(deviations, unit));
     Judgement { verdict, points, count, decimals, statements }
 }
 
-fn verdict(rule: &Rule, count: Count, deviations: &[Offset], aside: SetAside) -> Verdict {
+fn verdict(rule: &Rule, count: Count, deviations: &[Offset], aside: SetAside, unit: Unit) -> Verdict {
     let Count { pass, fail, open } = count;
     let all = deviations.len();
-    let limits = limits_text(rule.tolerance);
+    let limits = limits_text(rule.tolerance, unit);
     // The deviation that reaches farthest beyond its limit, or comes closest to it.
     let excess = |d: &Offset| (*d - rule.tolerance.upper).max(rule.tolerance.lower - *d);
     let worst = deviations.iter().copied().max_by_key(excess).map_or(0.0, mm);
-    let worst = format!("{worst:+.*}", rule.decimals(deviations));
+    let worst = format!("{:+.*} {}", rule.decimals(deviations, unit), unit.of(worst), unit.name());
     let with = if rule.uncertainty.is_some() { "" } else { ", simple acceptance without uncertainty" };
     let (state, text) = if fail > 0 {
         let undecided = if open > 0 { format!(", {open} undecided") } else { String::new() };
         let verb = if fail == 1 { "is" } else { "are" };
         (
             State::Fail,
-            format!("fail: {fail} of {all} points {verb} outside {limits}{undecided}, the worst {worst} mm{with}"),
+            format!("fail: {fail} of {all} points {verb} outside {limits}{undecided}, the worst {worst}{with}"),
         )
     } else if all > 0 && pass == all {
         let points = if all == 1 { "the point lies".to_owned() } else { format!("all {all} points lie") };
         let (state, said) = if aside.doubtful > 0 { (State::Open, "open, though") } else { (State::Pass, "pass:") };
-        (state, format!("{said} {points} within {limits}, closest to a limit {worst} mm{with}"))
+        (state, format!("{said} {points} within {limits}, closest to a limit {worst}{with}"))
     } else {
         let verb = if open == 1 { "is" } else { "are" };
         (
@@ -179,7 +188,7 @@ mod tests {
         let tolerance = Tolerance { lower: Offset::ZERO, upper: Offset::from_nm(20_000), from_command_line: false };
         let rule = Rule { tolerance, uncertainty: uncertainty.map(Offset::from_nm) };
         let deviations: Vec<Offset> = nm.iter().map(|v| Offset::from_nm(*v)).collect();
-        judge(Some(rule), &deviations, SetAside::default(), &untouched())
+        judge(Some(rule), &deviations, SetAside::default(), &untouched(), Unit::Millimetre)
     }
 
     #[test]
@@ -207,7 +216,7 @@ mod tests {
         let tolerance = Tolerance { lower: Offset::ZERO, upper: Offset::from_nm(20_000), from_command_line: false };
         let judged = |all, doubtful| {
             let aside = SetAside { all, doubtful };
-            judge(Some(rule(tolerance)), &[Offset::ZERO], aside, &untouched()).verdict
+            judge(Some(rule(tolerance)), &[Offset::ZERO], aside, &untouched(), Unit::Millimetre).verdict
         };
         let text = |all| judged(all, 0).text;
         assert!(
@@ -242,7 +251,7 @@ mod tests {
         let all = |second: Option<&Coverage>, nm: i64| {
             let walls = [("contour-1", Some(&untouched())), ("contour-2", second)].map(|(name, c)| (name, c.cloned()));
             let walls: Vec<NamedWall<'_>> = walls.iter().map(|(name, c)| (*name, c.as_ref())).collect();
-            judge_every(rule, &[Offset::from_nm(nm)], SetAside::default(), &walls)
+            judge_every(rule, &[Offset::from_nm(nm)], SetAside::default(), &walls, Unit::Millimetre)
         };
         assert_eq!(all(Some(&untouched()), 1).verdict.state, State::Pass);
         let open = all(None, 1);
@@ -254,7 +263,7 @@ mod tests {
 
     #[test]
     fn the_statements_name_rule_readings_set_aside_and_what_was_not_touched() {
-        let none = judge(None, &[Offset::ZERO], SetAside { all: 2, doubtful: 0 }, &untouched());
+        let none = judge(None, &[Offset::ZERO], SetAside { all: 2, doubtful: 0 }, &untouched(), Unit::Millimetre);
         assert_eq!(none.verdict.text, "open: no tolerance given");
         assert!(none.points.is_empty() && none.count.is_none());
         let said = none.statements.join("\n");

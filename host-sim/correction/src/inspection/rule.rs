@@ -6,6 +6,7 @@
 //! deviation is taken as exact: simple acceptance.
 
 use truepath_core::units::Offset;
+use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 use truepath_job::job::Tolerance;
 
@@ -44,14 +45,19 @@ impl Rule {
         }
     }
 
-    /// Decimals of a millimetre that tell each deviation without contradicting its verdict: 4, or 6 (whole nanometres) where
-    /// a value rounded to 4 would lie on the other side of a limit.
-    pub fn decimals(&self, deviations: &[Offset]) -> usize {
-        let rounded = |d: &Offset| {
-            let told = format!("{:.4}", mm(*d)).parse().map_or(0.0, |mm: f64| mm * 1e6);
-            Offset::from_nm(told.round() as i64)
+    /// Decimals of a millimetre, as [`Unit::of`] takes them, that tell each deviation in a unit without contradicting its verdict: 4, or
+    /// 6 (whole nanometres) where a value rounded to 4 would lie on the other side of a limit; of an inch 7 where it takes that.
+    pub fn decimals(&self, deviations: &[Offset], unit: Unit) -> usize {
+        let rounded = |d: &Offset, decimals: usize| {
+            let told: f64 = format!("{:.decimals$}", unit.of(mm(*d))).parse().unwrap_or_default();
+            Offset::from_nm((unit.in_mm(told) * 1e6).round() as i64)
         };
-        if deviations.iter().all(|d| self.point(rounded(d)) == self.point(*d)) { 4 } else { 6 }
+        let holds = |decimals: usize| deviations.iter().all(|d| self.point(rounded(d, decimals)) == self.point(*d));
+        let (few, most): (&[usize], _) = match unit {
+            Unit::Millimetre => (&[4], 6),
+            Unit::Inch => (&[4, 5, 6], 7),
+        };
+        few.iter().copied().find(|decimals| holds(*decimals)).unwrap_or(most)
     }
 
     /// Whether the uncertainty leaves no deviation that could be proven within the limits.
@@ -61,14 +67,15 @@ impl Rule {
     }
 
     /// The rule in words, for the report.
-    pub fn words(&self) -> String {
+    pub fn words(&self, unit: Unit) -> String {
         match self.uncertainty {
             Some(uncertainty) => format!(
-                "Decision rule after ISO 14253-1, guard band U = {} mm (expanded uncertainty of a probed deviation, k = 2) on \
+                "Decision rule after ISO 14253-1, guard band U = {} {} (expanded uncertainty of a probed deviation, k = 2) on \
                  both sides of each limit: a point passes where its deviation is within the limits by at least U, fails where \
                  it is beyond a limit by more than U, and is undecided between. The part fails with the first point that \
                  fails, passes when all points pass, and is open otherwise.",
-                mm(uncertainty)
+                unit.of(mm(uncertainty)),
+                unit.name()
             ),
             None => "Simple acceptance: no measuring uncertainty is given and none is taken into account; a point passes \
                      where its deviation is within the limits, the limits included, and fails otherwise. The part fails with \
@@ -79,9 +86,10 @@ impl Rule {
 }
 
 /// `±0.02 mm`, or `-0.01 … +0.02 mm`.
-pub(super) fn limits_text(tolerance: Tolerance) -> String {
+pub(super) fn limits_text(tolerance: Tolerance, unit: Unit) -> String {
     let Tolerance { lower, upper, .. } = tolerance;
-    if lower == -upper { format!("±{} mm", mm(upper)) } else { format!("{:+} to {:+} mm", mm(lower), mm(upper)) }
+    let (least, most, name) = (unit.of(mm(lower)), unit.of(mm(upper)), unit.name());
+    if lower == -upper { format!("±{most} {name}") } else { format!("{least:+} to {most:+} {name}") }
 }
 
 #[cfg(test)]
@@ -125,7 +133,7 @@ mod tests {
 
     #[test]
     fn a_deviation_is_never_rounded_to_the_other_side_of_its_limit() {
-        let decimals = |rule: Rule, nm: i64| rule.decimals(&[Offset::from_nm(nm)]);
+        let decimals = |rule: Rule, nm: i64| rule.decimals(&[Offset::from_nm(nm)], Unit::Millimetre);
         let exact = rule(0, 20_000, None);
         for (nm, expected) in [(20_000, 4), (19_951, 4), (20_049, 6), (20_051, 4), (-49, 6), (-51, 4), (12_345, 4)] {
             assert_eq!(decimals(exact, nm), expected, "{nm}");
@@ -134,6 +142,16 @@ mod tests {
         assert_eq!(decimals(rule(0, 20_040, None), 20_030), 4);
         assert_eq!(decimals(rule(0, 20_080, None), 20_070), 6);
         assert_eq!(decimals(rule(0, 20_000, Some(5_000)), 15_010), 6);
+        // In inches, of a limit of a thousandth and one that is round in millimetres, with as many digits as that takes.
+        let inches = |upper: i64, nm: i64| {
+            let rule = rule(-upper, upper, None);
+            let decimals = rule.decimals(&[Offset::from_nm(nm)], Unit::Inch);
+            format!("{:.decimals$} of {}", Unit::Inch.of(nm as f64 / 1e6), limits_text(rule.tolerance, Unit::Inch))
+        };
+        assert_eq!(inches(25_400, 25_300), "0.00100 of ±0.001 in");
+        assert_eq!(inches(25_400, 25_450), "0.001002 of ±0.001 in");
+        assert_eq!(inches(25_400, 25_401), "0.00100004 of ±0.001 in");
+        assert_eq!(inches(20_000, 20_010), "0.000788 of ±0.0007874 in");
     }
 
     #[test]

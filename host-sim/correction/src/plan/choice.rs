@@ -9,6 +9,7 @@ use truepath_core::job::{self, Identified};
 use truepath_core::process::ImmersionGrid;
 use truepath_core::units::{Offset, Real};
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Unit;
 use truepath_ground::units::{float, mm};
 use truepath_job::job::{PlanCutter, PlanTable};
 use truepath_job::measurement::Measurement;
@@ -42,6 +43,16 @@ pub struct Wanted {
     pub confidence: f64,
     /// What the process has to keep.
     pub limits: PlanTable,
+}
+
+impl Choice {
+    /// Its cuts in words, lengths in a unit.
+    pub fn process_in(&self, unit: Unit) -> String {
+        let told = words(&self.cuts, Unit::Millimetre);
+        self.process
+            .strip_suffix(&told)
+            .map_or_else(|| self.process.clone(), |with| with.to_owned() + &words(&self.cuts, unit))
+    }
 }
 
 /// A process to choose.
@@ -420,7 +431,7 @@ impl<'a> Planner<'a> {
             format!("T{}, helix {} degrees: ", cutter.number, float(cutter.helix_deg))
         });
         Choice {
-            process: with + &words(cuts),
+            process: with + &words(cuts, Unit::Millimetre),
             cutter: cutter.map(|cutter| cutter.number),
             cuts: cuts.to_vec(),
             passes: stage.passes.len(),

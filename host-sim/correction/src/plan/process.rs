@@ -2,6 +2,7 @@
 
 use truepath_core::process::{Aim, Order, Slices};
 use truepath_core::units::{Offset, Real};
+use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 
 /// How a cut goes down the wall.
@@ -97,13 +98,13 @@ impl Cut {
         self.levels.tips(slices.count()).into_iter().map(order).collect()
     }
 
-    /// In words, for a table.
-    pub fn words(&self) -> String {
+    /// In words, for a table, lengths in a unit.
+    pub fn words(&self, unit: Unit) -> String {
         let mut words = match self.aim {
             _ if self.spring => "spring pass".to_owned(),
             Aim::Middle => "to size".to_owned(),
             Aim::Mean => "mean to size".to_owned(),
-            Aim::Least(left) => format!("leave {:.0} um", mm(left) * 1e3),
+            Aim::Least(left) => format!("leave {:.0} {}", unit.small(mm(left)), unit.small_name()),
         };
         match self.levels {
             Levels::Even(1) => {}
@@ -120,9 +121,9 @@ impl Cut {
     }
 }
 
-/// The cuts of a process in words.
-pub fn words(cuts: &[Cut]) -> String {
-    cuts.iter().map(Cut::words).collect::<Vec<_>>().join(" | ")
+/// The cuts of a process in words, lengths in a unit.
+pub fn words(cuts: &[Cut], unit: Unit) -> String {
+    cuts.iter().map(|cut| cut.words(unit)).collect::<Vec<_>>().join(" | ")
 }
 
 /// A pass before another that leaves at least so much, in whole micrometres.

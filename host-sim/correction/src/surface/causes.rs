@@ -3,6 +3,8 @@
 //! The part of bending is found by cutting the same wall with a cutter that does not bend: what changes over the height is bending,
 //! what is left over the height beside it the helix makes. What changes of the mean belongs to the mean, which a shift cures.
 
+use truepath_ground::length::Unit;
+
 /// The error at the worst place of a wall in its parts, mm, material left positive: the first three add up to it; the others are
 /// standard deviations of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
@@ -48,15 +50,16 @@ impl Causes {
     }
 
     /// All of them in a line.
-    pub fn words(&self) -> String {
+    pub fn words(&self, unit: Unit) -> String {
         format!(
-            "{:+.4} mm = mean {:+.4}, helix {:+.4}, bending {:+.4}; sigma from noise {:.4}, not modelled {:.4}",
-            self.error_mm(),
-            self.mean_mm,
-            self.height_mm,
-            self.bending_mm,
-            self.noise_mm,
-            self.not_modelled_mm
+            "{:+.4} {} = mean {:+.4}, helix {:+.4}, bending {:+.4}; sigma from noise {:.4}, not modelled {:.4}",
+            unit.of(self.error_mm()),
+            unit.name(),
+            unit.of(self.mean_mm),
+            unit.of(self.height_mm),
+            unit.of(self.bending_mm),
+            unit.of(self.noise_mm),
+            unit.of(self.not_modelled_mm)
         )
     }
 }
@@ -81,14 +84,18 @@ impl MeasuredCauses {
     }
 
     /// All of them in a line.
-    pub fn words(&self) -> String {
-        let read =
-            if self.noise_mm > 0.0 { format!("; sigma of a reading {:.4}", self.noise_mm) } else { String::new() };
+    pub fn words(&self, unit: Unit) -> String {
+        let read = if self.noise_mm > 0.0 {
+            format!("; sigma of a reading {:.4}", unit.of(self.noise_mm))
+        } else {
+            String::new()
+        };
         format!(
-            "{:+.4} mm = mean {:+.4}, over the height (helix and bending) {:+.4}{read}",
-            self.mean_mm + self.height_mm,
-            self.mean_mm,
-            self.height_mm,
+            "{:+.4} {} = mean {:+.4}, over the height (helix and bending) {:+.4}{read}",
+            unit.of(self.mean_mm + self.height_mm),
+            unit.name(),
+            unit.of(self.mean_mm),
+            unit.of(self.height_mm),
         )
     }
 }
@@ -114,9 +121,9 @@ mod tests {
     fn a_measured_error_is_its_mean_and_what_the_height_adds() {
         let causes = MeasuredCauses::of(&[0.040, -0.020], 0.040, 0.002);
         assert!((causes.mean_mm - 0.010).abs() < 1e-12 && (causes.height_mm - 0.030).abs() < 1e-12, "{causes:?}");
-        assert!(causes.words().ends_with(
+        assert!(causes.words(Unit::Millimetre).ends_with(
             "+0.0400 mm = mean +0.0100, over the height (helix and bending) +0.0300; sigma of a reading 0.0020"
         ));
-        assert!(!MeasuredCauses { noise_mm: 0.0, ..causes }.words().contains("sigma"));
+        assert!(!MeasuredCauses { noise_mm: 0.0, ..causes }.words(Unit::Millimetre).contains("sigma"));
     }
 }

@@ -1,6 +1,7 @@
 //! What is expected of a whole wall, at every height: how large its error is, how sure that is, and what makes it. Every command that
 //! predicts a wall, of one pass or of several, says it with these figures.
 
+use truepath_ground::length::Unit;
 use truepath_ground::rows;
 
 use super::causes::Causes;
@@ -48,15 +49,15 @@ impl Surfaces {
     }
 
     /// Both in a sentence.
-    pub fn words(&self) -> String {
-        let (before, after) = (&self.before, &self.after);
+    pub fn words(&self, unit: Unit) -> String {
+        let (before, after, name) = (&self.before, &self.after, unit.name());
         format!(
-            "mean over the height {:.3} -> {:.3} mm; worst at any height {:.3} -> {:.3} ± {:.3} mm",
-            before.mean_mm,
-            after.mean_mm,
-            before.profile.profile_mm,
-            after.profile.profile_mm,
-            2.0 * after.profile.sigma_mm
+            "mean over the height {:.3} -> {:.3} {name}; worst at any height {:.3} -> {:.3} ± {:.3} {name}",
+            unit.of(before.mean_mm),
+            unit.of(after.mean_mm),
+            unit.of(before.profile.profile_mm),
+            unit.of(after.profile.profile_mm),
+            unit.of(2.0 * after.profile.sigma_mm)
         )
     }
 }
@@ -85,9 +86,14 @@ impl Surface {
     }
 
     /// Where the largest error is and what makes it, in a line.
-    pub fn worst_words(&self) -> String {
-        format!("at s = {:.1} mm, {:.1} mm above the tip: {}", self.s_mm, self.height_mm, self.causes.words())
+    pub fn worst_words(&self, unit: Unit) -> String {
+        format!("{}: {}", place_words(unit, self.s_mm, self.height_mm), self.causes.words(unit))
     }
+}
+
+/// A place of the wall in words.
+pub(super) fn place_words(unit: Unit, s_mm: f64, height_mm: f64) -> String {
+    format!("at s = {:.1} {name}, {:.1} {name} above the tip", unit.of(s_mm), unit.of(height_mm), name = unit.name())
 }
 
 #[cfg(test)]
@@ -113,6 +119,10 @@ mod tests {
         near(surface.causes.mean_mm, -0.010, 1e-12);
         assert_eq!((surface.s_mm, surface.height_mm), (12.0, 3.0));
         assert!((draws.within(0.030) - 0.5).abs() < 0.08);
-        assert!(surface.worst_words().starts_with("at s = 12.0 mm, 3.0 mm above the tip: -0.0300 mm = mean -0.0100"));
+        assert!(
+            surface
+                .worst_words(Unit::Millimetre)
+                .starts_with("at s = 12.0 mm, 3.0 mm above the tip: -0.0300 mm = mean -0.0100")
+        );
     }
 }

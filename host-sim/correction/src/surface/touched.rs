@@ -3,12 +3,14 @@
 use truepath_core::job::same_place;
 use truepath_core::probe::Contact;
 use truepath_core::units::Offset;
+use truepath_ground::length::Unit;
 use truepath_ground::rows::p95;
 use truepath_ground::units::{float, mm};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
 use super::causes::MeasuredCauses;
+use super::expected::place_words;
 
 /// The largest measured error at any touched height beside the largest mean over the touched heights of a place, mm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
@@ -51,18 +53,19 @@ impl TouchedSurface {
     }
 
     /// In a sentence.
-    pub fn words(&self) -> String {
+    pub fn words(&self, unit: Unit) -> String {
         format!(
-            "measured: mean over the touched heights of a place up to {:.3} mm; worst at any touched height {:.3} ± {:.3} mm",
-            self.mean_mm,
-            self.profile_mm,
-            2.0 * self.sigma_mm
+            "measured: mean over the touched heights of a place up to {:.3} {name}; worst at any touched height {:.3} ± {:.3} {name}",
+            unit.of(self.mean_mm),
+            unit.of(self.profile_mm),
+            unit.of(2.0 * self.sigma_mm),
+            name = unit.name()
         )
     }
 
     /// Where the largest deviation is and what makes it, in a line.
-    pub fn worst_words(&self) -> String {
-        format!("at s = {:.1} mm, {:.1} mm above the tip: {}", self.s_mm, self.height_mm, self.causes.words())
+    pub fn worst_words(&self, unit: Unit) -> String {
+        format!("{}: {}", place_words(unit, self.s_mm, self.height_mm), self.causes.words(unit))
     }
 
     /// Of contacts in the order of the contour.

@@ -13,6 +13,7 @@ use truepath_core::cut::Path;
 use truepath_core::identify::Observation;
 use truepath_core::units::{Offset, Position};
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Unit;
 use truepath_ground::units::{mm, nm, real};
 use truepath_job::dimension::{Axis, Crossing, Instrument, Kind, Walls};
 use truepath_job::pass::{Pass, PathBuffer};
@@ -180,7 +181,7 @@ pub fn plan_dimensions(
         let Some(best) = (0..left.len()).min_by(|a, b| left[*a].total_cmp(&left[*b])) else { break };
         let Candidate { planned, row } = candidates.swap_remove(best);
         let after = known.after_all(&[row.into()]);
-        let why = reason::tells([&known, &after], [0.0; 2], &prior);
+        let why = reason::tells([&known, &after], [0.0; 2], &prior, Unit::Millimetre);
         dimensions.push(PlannedDimension { why, ..planned });
         known = after;
     }

@@ -12,6 +12,7 @@ use truepath_core::correct::Node;
 use truepath_core::cut::Path;
 use truepath_core::units::Offset;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Unit;
 use truepath_ground::units::{float, mm};
 use truepath_job::pass::Pass;
 
@@ -91,7 +92,7 @@ pub fn plan_next(
             worst_s_mm: gain.worst_s,
             worth_it: gain.is_worth_it(noise),
         }),
-        ..Place::of(&sites[gain.choice.site], &gain.choice, gain.beside, (rank, prior), &setup.heights)
+        ..Place::of(&sites[gain.choice.site], &gain.choice, gain.beside, (rank, prior, pass.unit()), &setup.heights)
     };
     let places: Vec<Place> = gains.iter().enumerate().map(place).collect();
     let mut plan = Plan {
@@ -100,7 +101,7 @@ pub fn plan_next(
         wall_sigma_mm: [before, largest(after, &wall).0],
         ..Plan::of(setup, pass, settings, places)
     };
-    plan.warnings.extend(doubt(&gains, settings, noise));
+    plan.warnings.extend(doubt(&gains, settings, noise, pass.unit()));
     progress(1.0);
     Ok(plan)
 }
@@ -132,8 +133,9 @@ fn wall_at(path: &Path, s_mm: f64) -> Xy {
 }
 
 /// What the user should know: when more touches are not worth it.
-fn doubt(gains: &[Gain], settings: &Settings, noise: f64) -> Option<String> {
-    let below = format!("would move the corrected wall nowhere by more than the noise of a reading, {noise} mm");
+fn doubt(gains: &[Gain], settings: &Settings, noise: f64, unit: Unit) -> Option<String> {
+    let (told, name) = (unit.of(noise), unit.name());
+    let below = format!("would move the corrected wall nowhere by more than the noise of a reading, {told} {name}");
     match gains {
         [] => Some("no further place may be touched that far from those touched already".to_owned()),
         [first, ..] if !first.is_worth_it(noise) => {

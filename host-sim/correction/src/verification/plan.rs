@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use truepath_core::cut::WallLaw;
 use truepath_core::identify::Prior;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 use truepath_job::job::Assumed;
 use truepath_job::pass::{Pass, PathBuffer};
@@ -64,7 +65,7 @@ impl Place {
         site: &Site,
         choice: &Choice,
         beside: [f64; 2],
-        (rank, prior): (usize, &Prior),
+        (rank, prior, unit): (usize, &Prior, Unit),
         heights: &[Height],
     ) -> Self {
         Self {
@@ -73,8 +74,8 @@ impl Place {
             line: site.line,
             wall: site.wall,
             normal: site.normal.map(|v| -v),
-            what: reason::place(site),
-            why: reason::tells([&choice.before, &choice.after], beside, prior),
+            what: reason::place(site, unit),
+            why: reason::tells([&choice.before, &choice.after], beside, prior, unit),
             rank,
             gain: None,
             heights: heights.to_vec(),
@@ -250,7 +251,10 @@ pub fn plan_every(passes: &[Pass], settings: &Settings, progress: &mut dyn FnMut
     for (rank, choice) in chosen.choices.iter().enumerate() {
         let owner = owners[choice.site];
         let heights = &walls[owner].setup.heights;
-        places.push((owner, Place::of(&sites[choice.site], choice, [0.0; 2], (rank, &prior), heights)));
+        places.push((
+            owner,
+            Place::of(&sites[choice.site], choice, [0.0; 2], (rank, &prior, walls[owner].pass.unit()), heights),
+        ));
     }
     let several = passes.len() > 1;
     let mut plans: Vec<Plan> = Vec::new();

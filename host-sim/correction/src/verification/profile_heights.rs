@@ -174,13 +174,17 @@ pub(super) fn profile_heights(
     all.sort_unstable();
     all.dedup();
     let contact = float(path.helix().pitch) / float(path.helix().lag_per_mm).max(1e-9);
+    let unit = pass.unit();
+    let (name, small) = (unit.name(), unit.small_name());
     let why = format!(
-        "heights for the profile of the wall, {depth:.1} mm deep, {:.2} axial contact ratios of {contact:.1} mm: these {} leave {:.1} um of it open at any height (one sigma, {:.1} um before), even ones {:.1} um",
+        "heights for the profile of the wall, {:.1} {name} deep, {:.2} axial contact ratios of {:.1} {name}: these {} leave {:.1} {small} of it open at any height (one sigma, {:.1} {small} before), even ones {:.1} {small}",
+        unit.of(depth),
         depth / contact,
+        unit.of(contact),
         all.len(),
-        sigma[1] * 1e3,
-        sigma[0] * 1e3,
-        of_even * 1e3
+        unit.small(sigma[1]),
+        unit.small(sigma[0]),
+        unit.small(of_even)
     );
     let heights: Vec<f64> = all.iter().map(|k| middle(*k)).collect();
     let given = all.iter().enumerate().rev().map(|(at, slice)| {

@@ -2,6 +2,7 @@
 
 use truepath_core::identify::{Parameter, Prior};
 use truepath_core::units::{Offset, Real};
+use truepath_ground::length::Unit;
 
 use super::candidates::{Form, Site};
 use super::covariance::Covariance;
@@ -57,12 +58,13 @@ fn open(prior: &Prior) -> impl Iterator<Item = (usize, Parameter)> {
     Parameter::ALL.into_iter().enumerate().filter(move |(k, _)| sigma[*k] != Real::ZERO)
 }
 
-/// What is there: `inside corner, wall radius 9 mm, facing X+ Y-`.
-pub(super) fn place(site: &Site) -> String {
+/// What is there, in the unit of the program: `inside corner, wall radius 9 mm, facing X+ Y-`.
+pub(super) fn place(site: &Site, unit: Unit) -> String {
+    let name = unit.name();
     let form = match site.form {
         Form::Straight => "straight wall".to_owned(),
-        Form::InsideArc(r) => format!("inside corner, wall radius {:.3} mm", r),
-        Form::OutsideArc(r) => format!("outside corner, wall radius {:.3} mm", r),
+        Form::InsideArc(r) => format!("inside corner, wall radius {:.3} {name}", unit.of(r)),
+        Form::OutsideArc(r) => format!("outside corner, wall radius {:.3} {name}", unit.of(r)),
     };
     let steady = if site.unsteady == Offset::ZERO { "" } else { ", where the load changes" };
     format!("{form}, facing {}{steady}", facing(site.normal))
@@ -76,7 +78,7 @@ fn facing(normal: [f64; 2]) -> String {
 
 /// What the touches there tell: `tells stiffness 100 -> 12 %, …`, the share of its uncertainty
 /// before and after; and what stock and wall do there that no parameter says, the standard deviation before and after, mm.
-pub(super) fn tells([before, after]: [&Covariance; 2], beside: [f64; 2], prior: &Prior) -> String {
+pub(super) fn tells([before, after]: [&Covariance; 2], beside: [f64; 2], prior: &Prior, unit: Unit) -> String {
     let mut told: Vec<(f64, String)> = open(prior)
         .map(|(k, parameter)| (before.remaining(k), after.remaining(k), parameter))
         .filter(|(before, after, _)| 1.0 - after / before > TOLD)
@@ -89,8 +91,10 @@ pub(super) fn tells([before, after]: [&Covariance; 2], beside: [f64; 2], prior: 
     let of_parameters = told.into_iter().take(NAMED).map(|(_, text)| text);
     let [open, left] = beside;
     let is_told = 1.0 - left / open > TOLD && open >= WORTH_NAMING;
-    let of_place = is_told
-        .then(|| format!("what only this place has (uneven stock, a wall that yields) {open:.4} -> {left:.4} mm"));
+    let of_place = is_told.then(|| {
+        let (open, left) = (unit.of(open), unit.of(left));
+        format!("what only this place has (uneven stock, a wall that yields) {open:.4} -> {left:.4} {}", unit.name())
+    });
     let names: Vec<String> = of_parameters.chain(of_place).collect();
     if names.is_empty() {
         "sharpens what the others tell, and shows when one of them is wrong".to_owned()

@@ -90,6 +90,7 @@ pub fn plan_stock(
     let mut plans = Vec::new();
     for wall in walls {
         let share = (f64::from(count) * wall.length_mm / all).round().max(2.0) as usize;
+        let unit = wall.pass.unit();
         let chosen = spread(&wall.sites, share, wall.setup.apart());
         let place = |(rank, site): (usize, &Site)| Place {
             contour: several.then(|| name(wall.pass)),
@@ -97,15 +98,17 @@ pub fn plan_stock(
             line: site.line,
             wall: site.wall,
             normal: site.normal.map(|v| -v),
-            what: reason::place(site),
+            what: reason::place(site, unit),
             why: format!(
-                "{}, {:.3} mm of stock expected, at most {margin:.3} mm more or less",
+                "{}, {:.3} {in_unit} of stock expected, at most {:.3} {in_unit} more or less",
                 if matches!(site.form, Form::InsideArc(_)) {
                     "a roughing cutter gives way most in a corner"
                 } else {
                     "uneven stock shows between neighbours"
                 },
-                wall.stock.expected
+                unit.of(wall.stock.expected),
+                unit.of(margin),
+                in_unit = unit.name()
             ),
             rank,
             gain: None,

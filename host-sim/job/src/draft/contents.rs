@@ -1,5 +1,7 @@
 //! What a draft holds: the keys of a job in the making, and the contours of its program.
 
+use truepath_ground::length::Unit;
+
 /// Where a value comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -112,21 +114,21 @@ pub struct ContourNote {
 }
 
 impl ContourNote {
-    /// Its tool, heights and length.
-    pub fn words(&self) -> String {
+    /// Its tool, heights and length, in a unit.
+    pub fn words(&self, unit: Unit) -> String {
         let ContourNote { tool, z_mm, length_mm, closed, .. } = self;
         let tool = tool.map_or_else(String::new, |t| format!("tool {t}, "));
-        let heights: Vec<String> = z_mm.iter().map(f64::to_string).collect();
+        let heights: Vec<String> = z_mm.iter().map(|z| unit.of(*z).to_string()).collect();
         let closed = if *closed { "closed" } else { "open" };
-        format!("{tool}Z {}, {length_mm:.3} mm, {closed}", heights.join(" "))
+        format!("{tool}Z {}, {:.3} {}, {closed}", heights.join(" "), unit.of(*length_mm), unit.name())
     }
 }
 
 /// What a program asks for.
 #[derive(Clone, Debug)]
 pub struct Draft {
-    /// Whether the program is in inches: what is round in them stands in the job file so.
-    pub inches: bool,
+    /// The unit of the program: what is round in inches of a program in inches stands in the job file so.
+    pub unit: Unit,
     /// Keys of the job, in the order of the file.
     pub entries: Vec<Entry>,
     /// Finishing contours.

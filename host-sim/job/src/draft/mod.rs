@@ -145,7 +145,7 @@ impl<'a> Drafting<'a> {
         let probe_control =
             self.job_as_said().and_then(|job| job.probe_control).or_else(|| self.post.control.as_ref()?.probe);
         Ok(Draft {
-            inches: self.post.unit.inch,
+            unit: self.post.unit.told(),
             entries: self.entries,
             chosen: alone.then_some(candidate.note.number),
             contours,
@@ -594,18 +594,19 @@ impl Drafting<'_> {
 /// A contour in words.
 fn facts(pass: &Pass) -> String {
     let contour = &pass.core.contour;
+    let (unit, name) = (pass.unit(), pass.unit().name());
     let feeds = match (float(contour.lowest_feed), float(contour.highest_feed)) {
-        (low, high) if low == high => format!("F{low}"),
-        (low, high) => format!("F{low} to F{high}"),
+        (low, high) if low == high => format!("F{}", unit.of(low)),
+        (low, high) => format!("F{} to F{}", unit.of(low), unit.of(high)),
     };
     let speed = contour.speed.map_or_else(String::new, |s| format!("S{}, ", float(s)));
     let leads = pass.leads().map(<[_]>::len);
     format!(
-        "contour: lines {}-{}, Z {}, {:.3} mm, {}, {speed}{feeds} mm/min, leads of {} and {} moves",
+        "contour: lines {}-{}, Z {}, {:.3} {name}, {}, {speed}{feeds} {name}/min, leads of {} and {} moves",
         contour.lines.first,
         contour.lines.last,
-        height(contour.z),
-        mm(contour.length),
+        unit.of(height(contour.z)),
+        unit.of(mm(contour.length)),
         if contour.closed { "closed" } else { "open" },
         leads[0],
         leads[1],

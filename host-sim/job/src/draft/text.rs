@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use truepath_ground::decimal::Decimal;
 use truepath_ground::document::in_inches;
+use truepath_ground::length::Unit;
 
 use super::contents::{Draft, Entry, Origin};
 
@@ -49,7 +50,7 @@ pub(super) fn text(draft: &Draft, program: &str) -> String {
             }
         }
         for entry in entries {
-            let (key, value) = in_unit_of(draft, entry);
+            let (key, value) = entry.in_unit(draft.unit);
             match entry.origin {
                 Origin::Fixed if key == "program" => {
                     let name = toml::Value::String(program.to_owned()).to_string();
@@ -67,18 +68,20 @@ pub(super) fn text(draft: &Draft, program: &str) -> String {
 /// Decimals of an inch at which a length counts as round.
 const ROUND: i32 = 4;
 
-/// Key and value, in inches where the program is and the length is round in them: then it was meant so.
-fn in_unit_of(draft: &Draft, entry: &Entry) -> (String, String) {
-    let (_, key) = entry.place();
-    let inches = || {
-        let key = in_inches(key).filter(|_| draft.inches)?;
-        let mm = Decimal::parse(&entry.value)?;
-        let rounded = (mm.as_f64() / MM_PER_INCH * 10f64.powi(ROUND)).round() / 10f64.powi(ROUND);
-        let value = rounded.to_string();
-        let same = Decimal::parse(&value)?.of_inches().as_mm() == mm.as_mm() && rounded != 0.0;
-        same.then_some((key, value))
-    };
-    inches().unwrap_or_else(|| (key.to_owned(), entry.value.clone()))
+impl Entry {
+    /// Key, without its table, and value: in inches where the program is and the length is round in them, since then it was meant so.
+    pub fn in_unit(&self, unit: Unit) -> (String, String) {
+        let (_, key) = self.place();
+        let inches = || {
+            let key = in_inches(key).filter(|_| unit == Unit::Inch)?;
+            let mm = Decimal::parse(&self.value)?;
+            let rounded = (mm.as_f64() / MM_PER_INCH * 10f64.powi(ROUND)).round() / 10f64.powi(ROUND);
+            let value = rounded.to_string();
+            let same = Decimal::parse(&value)?.of_inches().as_mm() == mm.as_mm() && rounded != 0.0;
+            same.then_some((key, value))
+        };
+        inches().unwrap_or_else(|| (key.to_owned(), self.value.clone()))
+    }
 }
 
 /// The contours, where there are several: the chosen one in force, the others in comments.
@@ -89,7 +92,7 @@ fn features(out: &mut String, draft: &Draft) {
         let sign = if contour.number == chosen { "" } else { "# " };
         let id = format!("wall-{}", contour.number);
         let _ = write!(out, "{sign}[[feature]]");
-        let _ = writeln!(out, "{}# {}", " ".repeat(COMMENT.saturating_sub(11 + sign.len())), contour.words());
+        let _ = writeln!(out, "{}# {}", " ".repeat(COMMENT.saturating_sub(11 + sign.len())), contour.words(draft.unit));
         let _ = writeln!(out, "{sign}id = \"{id}\"\n{sign}lines = [{}, {}]", contour.first_line, contour.last_line);
     }
 }

@@ -1,6 +1,7 @@
 //! What was found in a program, for people and for machines.
 
 use truepath_core::gcode::{Found, Idle, LineRange, Role};
+use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 
 /// Contours that were found by search are called by their number.
@@ -119,12 +120,13 @@ pub(super) fn lines_of(lines: LineRange) -> String {
 
 impl Row {
     /// One line of a table, without the reason.
-    pub(super) fn short(&self) -> String {
+    pub(super) fn short(&self, unit: Unit) -> String {
         let tool = self.tool.map_or_else(|| "no tool".to_owned(), |t| format!("tool {t}"));
-        let z = self.z_mm.map_or_else(|| "Z unknown".to_owned(), |z| format!("Z {z}"));
+        let z = self.z_mm.map_or_else(|| "Z unknown".to_owned(), |z| format!("Z {}", unit.of(z)));
         let lines = lines_of(LineRange { first: self.first_line, last: self.last_line });
         let closed = if self.closed { "closed" } else { "open" };
-        format!("{:<10} {lines:<14} {tool:<8} {z:<10} {:>9.3} mm  {closed}", self.role, self.length_mm)
+        let (length, name) = (unit.of(self.length_mm), unit.name());
+        format!("{:<10} {lines:<14} {tool:<8} {z:<10} {length:>9.3} {name}  {closed}", self.role)
     }
 }
 
@@ -134,7 +136,7 @@ const MOST_ROWS: usize = 20;
 /// A list inside an error.
 pub(super) fn listed<'r>(rows: impl Iterator<Item = &'r Row>) -> String {
     let name = |row: &Row| row.contour.map_or_else(String::new, |n| format!("  {CONTOUR}{n}"));
-    let all: Vec<String> = rows.map(|row| format!("\n  {}{}", row.short(), name(row))).collect();
+    let all: Vec<String> = rows.map(|row| format!("\n  {}{}", row.short(Unit::Millimetre), name(row))).collect();
     let mut text = all.iter().take(MOST_ROWS).cloned().collect::<String>();
     if all.len() > MOST_ROWS {
         text += &format!("\n  and {} more", all.len() - MOST_ROWS);
@@ -154,14 +156,14 @@ impl FeatureSummary {
     }
 
     /// The pass that was simulated, inspected or corrected, among how many, and where it is.
-    pub fn in_words(&self) -> String {
+    pub fn in_words(&self, unit: Unit) -> String {
         let mut text = self.name();
         if let Some(own) = self.finishing().find(|p| p.pass == self.pass) {
             let levels = self.finishing().count();
             if levels > 1 {
                 text += &format!(", pass {} of {levels}", self.pass);
             }
-            text += &own.z_mm.map_or_else(String::new, |z| format!(", Z {z} mm"));
+            text += &own.z_mm.map_or_else(String::new, |z| format!(", Z {} {}", unit.of(z), unit.name()));
             text += &format!(", {}", lines_of(LineRange { first: own.first_line, last: own.last_line }));
         }
         text
@@ -170,25 +172,27 @@ impl FeatureSummary {
 
 impl FeatureSummary {
     /// What a report on this pass says nothing of; `None` when the program makes no other wall that is known.
-    pub fn not_judged(&self) -> Option<String> {
-        let place =
-            |p: &PassRow| p.z_mm.map_or_else(|| format!("pass {}", p.pass), |z| format!("pass {} (Z {z} mm)", p.pass));
+    pub fn not_judged(&self, unit: Unit) -> Option<String> {
+        let place = |p: &PassRow| match p.z_mm {
+            None => format!("pass {}", p.pass),
+            Some(z) => format!("pass {} (Z {} {})", p.pass, unit.of(z), unit.name()),
+        };
         let passes = self.finishing().filter(|p| p.pass != self.pass).map(place);
         let features = self.other_features.iter().map(|id| format!("feature \"{id}\""));
         let others: Vec<String> = passes.chain(features).collect();
         (!others.is_empty())
-            .then(|| format!("Judged is the wall of {}; not those of {}.", self.in_words(), others.join(", ")))
+            .then(|| format!("Judged is the wall of {}; not those of {}.", self.in_words(unit), others.join(", ")))
     }
 }
 
 /// What was chosen and why, for people.
-pub fn listing(feature: &FeatureSummary) -> String {
+pub fn listing(feature: &FeatureSummary, unit: Unit) -> String {
     let mut text = format!("{}, by {}: {}\n", feature.name(), feature.chosen_by, feature.why);
     if !feature.other_features.is_empty() {
         text += &format!("  other features, each a correction of its own: {}\n", feature.other_features.join(", "));
     }
     for row in &feature.candidates {
-        text += &format!("  {}  {}\n", row.short(), row.why);
+        text += &format!("  {}  {}\n", row.short(unit), row.why);
     }
     let levels = feature.finishing().count();
     text += &format!("pass {} of {levels}", feature.pass);

@@ -20,6 +20,7 @@ pub(crate) use text::plain;
 pub use tool::{Shape, ToolNote};
 
 use truepath_ground::diagnostics::Source;
+use truepath_ground::length::Unit;
 
 use text::TextLine;
 
@@ -30,6 +31,13 @@ pub struct ProgramUnit {
     pub inch: bool,
     /// The line of G20, G21, G70 or G71; `None` where there is none and millimetres are taken.
     pub line: Option<u32>,
+}
+
+impl ProgramUnit {
+    /// The unit in which people are told.
+    pub const fn told(self) -> Unit {
+        if self.inch { Unit::Inch } else { Unit::Millimetre }
+    }
 }
 
 /// A material that a comment names.

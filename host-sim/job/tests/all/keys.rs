@@ -288,7 +288,8 @@ fn page() -> String {
         Every key of a job with its range and default, written by `cargo xtask job --write` from what the readers ask for. \
         `truepath init program.nc` writes a job with all that the program says. Every key carries its unit; an unknown key is an \
         error. Every length may be written in inches under a key of its own, `allowance_in` in place of `allowance_mm`, \
-        `feed_in_per_min`.\n\n\
+        `feed_in_per_min`. Of a program in inches the terminal and the pictures of the commands speak in inches (0.0012 in); files and `--json` \
+        have millimetres.\n\n\
         Editors that complete TOML by a schema (Taplo, *Even Better TOML*) take [job.schema.json](job.schema.json): a first line \
         `#:schema PATH/job.schema.json` in the job, or the `include` of a `[[rule]]` in `taplo.toml`.\n\n\
         A key whose default is read from the program or wide is *assumed* where it is left out: every command prints what it took \

@@ -4,6 +4,7 @@
 //! of the others, in the words of `feature` in `summary.json`.
 
 use serde::Serialize;
+use truepath_ground::length::Unit;
 use truepath_job::feature::{FeatureSummary, Row};
 use truepath_job::pass::Pass;
 
@@ -86,7 +87,7 @@ impl Chosen {
             _ if corrects => Became::Unchanged,
             _ => Became::Elsewhere,
         };
-        let shown = feature.in_words();
+        let shown = feature.in_words(Unit::Millimetre);
         let cuts: Vec<ProgramCut> =
             feature.candidates.into_iter().map(|row| ProgramCut { became: became(&row), row }).collect();
         let all = cuts.len();

@@ -6,6 +6,7 @@ use truepath_correction::correct::CorrectedPass;
 use truepath_correction::summary::CorrectSummary;
 use truepath_correction::surface::expected::Surfaces;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Unit;
 use truepath_ground::units::float;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
@@ -83,7 +84,7 @@ pub(super) fn of_correction(
         cut: false,
     });
     page.next = Some(after_correction(&done.summary, file(pass.job.source().name()), None));
-    page.told = Some(done.summary.floor.line(&done.summary.surface.after));
+    page.told = Some(done.summary.floor.line(Unit::Millimetre, &done.summary.surface.after));
     page.results = figures(&done.summary, &["largest error without correction", "largest error with it"]);
     page.warnings = page_warnings(
         pass,
@@ -128,9 +129,12 @@ fn facts(pass: &Pass, done: &CorrectedPass, of: Points) -> Vec<Fact> {
         Fact::new("law", format!("{}; the wall follows the {} force", s.law, s.wall_law)),
         Fact::new("error shown", shown(wanted.target, wanted.band, float(pass.core.setup.axial_depth))),
     ];
-    facts.push(Fact::new("expected", format!("{} (2 sigma)", s.surface.words())));
+    facts.push(Fact::new("expected", format!("{} (2 sigma)", s.surface.words(Unit::Millimetre))));
     facts.extend(at_every_height(&s.surface));
-    facts.push(Fact::new("floor", format!("{}; {}", s.floor.words(), s.floor.next(&s.surface.after))));
+    facts.push(Fact::new(
+        "floor",
+        format!("{}; {}", s.floor.words(Unit::Millimetre), s.floor.next(Unit::Millimetre, &s.surface.after)),
+    ));
     let route = match (&done.program, &done.image) {
         (Some(_), Some(_)) => "program and coprocessor",
         (None, Some(_)) => "coprocessor: the program stays as it is",
@@ -169,7 +173,7 @@ fn at_every_height(surface: &Surfaces) -> [Fact; 2] {
         2.0 * after.p95_sigma_mm,
         surface.before.p95_mm
     );
-    [Fact::new("at every height", all), Fact::new("what makes the worst", after.worst_words())]
+    [Fact::new("at every height", all), Fact::new("what makes the worst", after.worst_words(Unit::Millimetre))]
 }
 
 /// What the error along the contour is of.

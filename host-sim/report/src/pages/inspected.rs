@@ -3,6 +3,7 @@
 use truepath_correction::inspection;
 use truepath_correction::inspection::Judgement;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
@@ -58,7 +59,7 @@ pub fn inspected(
     // Dimensions alone are the file that was measured from.
     let probe = Some(measurement.file.as_str()).filter(|name| dimensions != Some(*name));
     page.next = Some(correct(file(pass.job.source().name()), probe.map(file), dimensions.map(file)));
-    page.told = Some(surface.words() + " (2 sigma)");
+    page.told = Some(surface.words(Unit::Millimetre) + " (2 sigma)");
     page.results = figures(summary, measurement, judgement.decimals);
     page.verdict = Some(Verdict {
         state: match summary.verdict.state {

@@ -6,6 +6,7 @@ use truepath_correction::learn::LearnSummary;
 use truepath_correction::learning::Verdict;
 use truepath_correction::surface::expected::Surfaces;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Unit;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
@@ -45,7 +46,7 @@ pub fn learned(
     if let Some(outlook) = &mut page.outlook {
         outlook.now = WallFigures::from(&summary.whole_surface);
     }
-    let promise = summary.correct.floor.line(&summary.correct.surface.after);
+    let promise = summary.correct.floor.line(Unit::Millimetre, &summary.correct.surface.after);
     page.told = Some(format!("Part {}: {promise}", next_part(verdict)));
     page.results = came_out(summary).into_iter().chain(figures(&done.summary, &names(verdict))).collect();
     if let Some(outcome) = &mut page.outcome {
@@ -63,14 +64,21 @@ pub fn learned(
 fn from_part_to_part(summary: &LearnSummary) -> String {
     let surfaces = Surfaces { before: summary.whole_surface, after: summary.correct.surface.after };
     let part = summary.verdict.part;
-    format!("part {part} to part {}, expected: {} (2 sigma)", next_part(&summary.verdict), surfaces.words())
+    format!(
+        "part {part} to part {}, expected: {} (2 sigma)",
+        next_part(&summary.verdict),
+        surfaces.words(Unit::Millimetre)
+    )
 }
 
 /// What made the worst of the part that was measured: at its touches, and of its whole wall as the model of all parts has it.
 fn what_made_it(summary: &LearnSummary) -> [Fact; 2] {
     let part = summary.verdict.part;
     let fact = |of: &str, words: String| Fact::new(format!("worst of part {part}, {of}"), words);
-    [fact("touched", summary.measured_surface.worst_words()), fact("by the model", summary.whole_surface.worst_words())]
+    [
+        fact("touched", summary.measured_surface.worst_words(Unit::Millimetre)),
+        fact("by the model", summary.whole_surface.worst_words(Unit::Millimetre)),
+    ]
 }
 
 const fn next_part(verdict: &Verdict) -> u32 {

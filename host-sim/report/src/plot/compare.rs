@@ -6,6 +6,7 @@ use truepath_chart::panel::{Panel, panels};
 use truepath_chart::style::{INK_AFTER, INK_BEFORE, INKS, Ink};
 use truepath_chart::view::View;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Unit;
 
 /// Spread over the height from which it is drawn, mm.
 const HEIGHT_TOLD: f64 = 0.001;
@@ -52,9 +53,12 @@ impl LawWall {
         self.places.iter().map(move |p| if ends.contains(&p[0]) { *p } else { [p[0], f64::NAN, f64::NAN, f64::NAN] })
     }
 
-    fn curve(&self, at: usize, trim_mm: f64) -> Curve {
-        let largest = self.max_error_mm.map_or_else(String::new, |max| format!(": largest {} mm", number(max, 3)));
-        let points = self.judged(trim_mm).map(|p| (p[0], p[1])).collect();
+    fn curve(&self, at: usize, trim_mm: f64, unit: Unit) -> Curve {
+        let decimals = if unit == Unit::Inch { 4 } else { 3 };
+        let largest = self
+            .max_error_mm
+            .map_or_else(String::new, |max| format!(": largest {} {}", number(unit.said(max), decimals), unit.name()));
+        let points = self.judged(trim_mm).map(|p| (unit.said(p[0]), unit.said(p[1]))).collect();
         Curve::new(format!("{}{largest}", self.title), self.ink(at), points)
     }
 }
@@ -65,21 +69,25 @@ impl LawWall {
 /// # Errors
 /// As [`panels`].
 pub fn compare(view: &View, compared: &Compared) -> Result<Vec<u8>, Failure> {
+    let unit = view.unit;
     let worst = |law: &LawWall| law.max_error_mm.unwrap_or(0.0);
     let limit = 1.5 * compared.laws.first().map_or(0.0, worst);
     let each = || compared.laws.iter().enumerate();
-    let all: Vec<Curve> = each().map(|(at, law)| law.curve(at, compared.trim_mm)).collect();
+    let all: Vec<Curve> = each().map(|(at, law)| law.curve(at, compared.trim_mm, unit)).collect();
     let near = each().filter(|(_, law)| worst(law) <= limit);
-    let mut near = Panel::new("wall error (mm)", near.map(|(at, law)| law.curve(at, compared.trim_mm)).collect());
+    let mut near = Panel::new(
+        format!("wall error ({})", unit.name()),
+        near.map(|(at, law)| law.curve(at, compared.trim_mm, unit)).collect(),
+    );
     // A cutter without helix leaves the same at every height: nothing to show.
     let spread = |p: &[f64; 4]| p[3] - p[2] > HEIGHT_TOLD;
     near.band = compared.laws.last().filter(|law| law.judged(compared.trim_mm).any(|p| spread(&p))).map(|law| Band {
         name: format!("{}: over the height", law.title),
-        edges: law.judged(compared.trim_mm).map(|p| (p[0], p[2], p[3])).collect(),
+        edges: law.judged(compared.trim_mm).map(|p| (unit.said(p[0]), unit.said(p[2]), unit.said(p[3]))).collect(),
         colour: law.ink(compared.laws.len() - 1).colour,
     });
     let on = if compared.on_plant { "on a virtual machine" } else { "on the identified machine" };
-    let whole = Panel::new("wall error (mm)", all);
+    let whole = Panel::new(format!("wall error ({})", unit.name()), all);
     let rows = if near.curves.len() < whole.curves.len() { vec![whole, near] } else { vec![near] };
     panels(view, &format!("What every law leaves {on}"), &rows)
 }

@@ -15,11 +15,13 @@ use super::wall::Wall;
 /// # Errors
 /// As [`panels`].
 pub fn correction(view: &View, rows: &[CorrectionRow]) -> Result<Vec<u8>, Failure> {
-    let over = |f: fn(&CorrectionRow) -> f64| rows.iter().map(|r| (r.s_mm, f(r))).collect::<Vec<_>>();
+    let (unit, name) = (view.unit, view.unit.name());
+    let over =
+        |f: fn(&CorrectionRow) -> f64| rows.iter().map(|r| (unit.said(r.s_mm), unit.said(f(r)))).collect::<Vec<_>>();
     let path =
         vec![Curve::new("along X", ALONG_X, over(|r| r.dx_mm)), Curve::new("along Y", INK_ALONG_Y, over(|r| r.dy_mm))];
-    let errors = Wall::of_correction(rows).map(|wall| Curve::new(&*wall.name, wall.ink, wall.errors()));
-    let mut wall = Panel::new("wall error (mm)", errors.into());
-    wall.band = Some(uncertainty(rows));
-    panels(view, "Correction of the path and predicted wall", &[Panel::new("correction (mm)", path), wall])
+    let errors = Wall::of_correction(rows).map(|wall| Curve::new(&*wall.name, wall.ink, wall.said(unit).errors()));
+    let mut wall = Panel::new(format!("wall error ({name})"), errors.into());
+    wall.band = Some(uncertainty(rows, unit));
+    panels(view, "Correction of the path and predicted wall", &[Panel::new(format!("correction ({name})"), path), wall])
 }

@@ -4,11 +4,12 @@ use truepath_chart::chart::{RIGHT, room};
 use truepath_chart::curve::{Band, Curve};
 use truepath_chart::legend::{Entry, Legend, Sign};
 use truepath_chart::page::{picture, thick, title_height, units};
-use truepath_chart::panel::{ALONG, Mark, Panel, along, columns};
+use truepath_chart::panel::{Mark, Panel, along, along_name, columns};
 use truepath_chart::style::AFTER;
 use truepath_chart::view::{View, short};
 use truepath_correction::rows::CorrectionRow;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Unit;
 
 use super::part::Part;
 use super::wall::{Probed, Wall};
@@ -34,15 +35,19 @@ pub fn error(
 ) -> Result<Vec<u8>, Failure> {
     let title = view.titled(title)?;
     walls.iter().try_for_each(|wall| short("a name", &wall.name))?;
+    let unit = view.unit;
+    // Everything that is drawn is in the unit of the view.
+    let walls: Vec<Wall> = walls.iter().map(|wall| wall.said(unit)).collect();
+    let probed: Vec<Probed> = probed.iter().map(|p| Probed { place: p.place.said(unit), ..*p }).collect();
     let marks = probed.iter().map(|p| Mark { s_mm: p.place.s_mm, value: p.place.error_mm, outlying: p.outlying });
     let panel = Panel {
-        unit: "wall error (mm)".to_owned(),
+        unit: format!("wall error ({})", unit.name()),
         curves: walls.iter().map(|w| Curve::new(&*w.name, w.ink, w.errors())).collect(),
         band,
         marks: marks.collect(),
     };
     let window = view.window(panel.extent().unwrap_or((0.0, 1.0)))?;
-    let part = Part::new(walls, probed, window, view)?;
+    let part = Part::new(&walls, &probed, window, view)?;
     let (width, _) = view.size(LEAST, 0)?;
     let fitting = part.height(f64::from(width)).clamp(*PART.start(), *PART.end());
     let size = view.size((title_height(title) + 40.0 + fitting + DIAGRAM).round() as u32, LEAST)?;
@@ -64,7 +69,7 @@ pub fn error(
         part.draw(&area(top + rows, upper(rows)), left, (&x, &y), per_px)?;
         let below = area(height - lower, lower);
         let along = along(window);
-        panel.draw(&below, &Legend::default(), left, (&along, window), Some(ALONG))
+        panel.draw(&below, &Legend::default(), left, (&along, window), Some(&along_name(view.unit)))
     })
 }
 
@@ -73,15 +78,15 @@ pub fn error(
 /// # Errors
 /// As [`error`].
 pub fn predicted_error(view: &View, rows: &[CorrectionRow], probed: &[Probed]) -> Result<Vec<u8>, Failure> {
-    error(view, "The wall as the model sees it", &Wall::of_correction(rows), Some(uncertainty(rows)), probed)
+    error(view, "The wall as the model sees it", &Wall::of_correction(rows), Some(uncertainty(rows, view.unit)), probed)
 }
 
-/// Two standard deviations to either side of what is predicted with a correction.
-pub(super) fn uncertainty(rows: &[CorrectionRow]) -> Band {
+/// Two standard deviations to either side of what is predicted with a correction, in a unit.
+pub(super) fn uncertainty(rows: &[CorrectionRow], unit: Unit) -> Band {
     let edge = |r: &CorrectionRow| {
         let error = r.predicted_error_after_mm.unwrap_or(f64::NAN);
         let wide = 2.0 * r.sigma_mm.unwrap_or(f64::NAN);
-        (r.s_mm, error - wide, error + wide)
+        (unit.said(r.s_mm), unit.said(error - wide), unit.said(error + wide))
     };
     Band { name: "±2σ with correction".to_owned(), edges: rows.iter().map(edge).collect(), colour: AFTER }
 }

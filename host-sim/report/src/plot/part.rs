@@ -13,6 +13,7 @@ use truepath_chart::style::{DARK, NOMINAL, failed};
 use truepath_chart::thin::kept;
 use truepath_chart::view::View;
 use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::length::Unit;
 
 use super::wall::{Place, Probed, Wall};
 
@@ -31,6 +32,8 @@ pub(super) struct Part<'a> {
     window: (f64, f64),
     /// Times the error is drawn larger.
     magnify: f64,
+    /// The unit of all of it.
+    unit: Unit,
 }
 
 impl<'a> Part<'a> {
@@ -49,7 +52,7 @@ impl<'a> Part<'a> {
         let peak = errors.filter(|e| e.is_finite()).fold(0.0f64, |m, e| m.max(e.abs()));
         // The largest error is drawn about a tenth as long as the part.
         let usual = if peak > 0.0 { round_below(size / 10.0 / peak).clamp(1.0, 1e5) } else { 1.0 };
-        Ok(Self { walls, probed, window, magnify: view.magnification(usual)? })
+        Ok(Self { walls, probed, window, magnify: view.magnification(usual)?, unit: view.unit })
     }
 
     /// The places of a wall that are drawn, for a scale in mm to a pixel.
@@ -66,14 +69,15 @@ impl<'a> Part<'a> {
         entries.extend(self.walls.iter().map(|w| Entry::line(w.ink, &w.name)));
         entries.extend(band);
         if self.probed.iter().any(|p| !p.outlying) {
-            entries.push(entry(Sign::Point, DARK, "probed (deviation in mm)"));
+            entries.push(entry(Sign::Point, DARK, &format!("probed (deviation in {})", self.unit.word())));
         }
         if self.probed.iter().any(|p| p.outlying) {
             entries.push(entry(Sign::Ring, DARK, "probed, of little weight"));
         }
         // A round error about 50 px long.
         let shown = round_below(50.0 * per_px / self.magnify);
-        let text = format!("{} mm of error, drawn {} times larger", plain(shown), plain(self.magnify));
+        let text =
+            format!("{} {} of error, drawn {} times larger", plain(shown), self.unit.name(), plain(self.magnify));
         entries.push(entry(Sign::Bar(shown * self.magnify / per_px), DARK, &text));
         Legend::new(entries, width)
     }
@@ -103,7 +107,8 @@ impl<'a> Part<'a> {
 
     /// Draws it into an area, leaving `left` pixels for the vertical axis.
     pub(super) fn draw(&self, area: &Area, left: f64, (x, y): (&Scale, &Scale), per_px: f64) -> Result<(), Failure> {
-        let mut chart = chart(area, left, (x, Some("X (mm)")), (y, "Y (mm)"))?;
+        let [across, up] = ["X", "Y"].map(|axis| format!("{axis} ({})", self.unit.name()));
+        let mut chart = chart(area, left, (x, Some(&across)), (y, &up))?;
         let stands = |p: &Place| if p.error_mm.is_finite() { (p.wall[0], p.wall[1]) } else { (f64::NAN, f64::NAN) };
         if let Some(first) = self.walls.first() {
             let nominal: Vec<(f64, f64)> = self.places(first, per_px).into_iter().map(stands).collect();
@@ -129,9 +134,11 @@ impl<'a> Part<'a> {
         let (across, down) = chart.plotting_area().get_pixel_range();
         let of = |v: i32, base: i32| f64::from(v - base) / FINE;
         let frame = [of(across.start, base.0), of(down.start, base.1), of(across.end, base.0), of(down.end, base.1)];
-        for spot in self.probed.chunk_by(|a, b| (a.place.s_mm - b.place.s_mm).abs() < SPOT).take(WRITTEN) {
+        for spot in
+            self.probed.chunk_by(|a, b| (a.place.s_mm - b.place.s_mm).abs() < self.unit.said(SPOT)).take(WRITTEN)
+        {
             let Some(place) = spot.first().map(|p| p.place) else { continue };
-            let text = deviations(spot.iter().map(|p| p.place.error_mm));
+            let text = deviations(spot.iter().map(|p| p.place.error_mm), self.unit);
             let (x, y) = chart.backend_coord(&(place.wall[0], place.wall[1]));
             let at = [f64::from(x - base.0) / FINE, f64::from(y - base.1) / FINE];
             // On paper Y points down.
@@ -186,9 +193,10 @@ impl<'a> Part<'a> {
 }
 
 /// Deviations at one spot as text.
-fn deviations(errors: impl Iterator<Item = f64>) -> String {
+fn deviations(errors: impl Iterator<Item = f64>, unit: Unit) -> String {
+    let decimals = if unit == Unit::Inch { 4 } else { 3 };
     let (low, high) = errors.fold((f64::MAX, f64::MIN), |(l, h), e| (l.min(e), h.max(e)));
-    let signed = |error: f64| format!("{}{}", if error > 0.0 { "+" } else { "" }, number(error, 3));
+    let signed = |error: f64| format!("{}{}", if error > 0.0 { "+" } else { "" }, number(error, decimals));
     let (low, high) = (signed(low), signed(high));
     if low == high { low } else { format!("{low} … {high}") }
 }

@@ -5,6 +5,7 @@ use truepath_chart::panel::{Panel, panels};
 use truepath_chart::style::{ALONG_X, DARK, INK_AFTER, INK_ALONG_Y, INK_MAGNITUDE, INKS, Ink};
 use truepath_chart::view::View;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Unit;
 
 use crate::TraceRow;
 
@@ -33,13 +34,23 @@ impl Column {
     pub const USUAL: [Self; 4] = [Self::Arc, Self::Force, Self::Deflection, Self::Error];
 
     /// The values with their unit.
-    const fn unit(self) -> &'static str {
+    fn named(self, unit: Unit) -> String {
+        let name = unit.name();
         match self {
-            Self::Arc => "engagement (°)",
-            Self::Chip => "chip area (mm²)",
-            Self::Force | Self::Components => "mean force (N)",
-            Self::Deflection => "deflection (mm)",
-            Self::Error => "wall error (mm)",
+            Self::Arc => "engagement (°)".to_owned(),
+            Self::Chip => format!("chip area ({name}²)"),
+            Self::Force | Self::Components => "mean force (N)".to_owned(),
+            Self::Deflection => format!("deflection ({name})"),
+            Self::Error => format!("wall error ({name})"),
+        }
+    }
+
+    /// A value of a row in a unit of length.
+    const fn said(self, unit: Unit, value: f64) -> f64 {
+        match self {
+            Self::Arc | Self::Force | Self::Components => value,
+            Self::Chip => unit.said(unit.said(value)),
+            Self::Deflection | Self::Error => unit.said(value),
         }
     }
 
@@ -61,14 +72,16 @@ impl Column {
     }
 
     /// Diagrams of several passes: each shows one value of them all, so that every curve is a pass.
-    fn several(self) -> Vec<(&'static str, Of)> {
+    fn several(self, unit: Unit) -> Vec<(String, Of)> {
+        let named = self.named(unit);
+        let along = |axis: &str| format!("deflection {axis} ({})", unit.name());
         match self {
-            Self::Arc => vec![(self.unit(), |r| r.arc_deg)],
-            Self::Chip => vec![(self.unit(), |r| r.chip_area_mm2)],
-            Self::Force => vec![(self.unit(), |r| r.force_n)],
-            Self::Components => vec![("mean force X (N)", |r| r.fx_n), ("mean force Y (N)", |r| r.fy_n)],
-            Self::Deflection => vec![("deflection X (mm)", |r| r.dx_mm), ("deflection Y (mm)", |r| r.dy_mm)],
-            Self::Error => vec![(self.unit(), |r| r.error_mm)],
+            Self::Arc => vec![(named, |r| r.arc_deg)],
+            Self::Chip => vec![(named, |r| r.chip_area_mm2)],
+            Self::Force => vec![(named, |r| r.force_n)],
+            Self::Components => vec![("mean force X (N)".into(), |r| r.fx_n), ("mean force Y (N)".into(), |r| r.fy_n)],
+            Self::Deflection => vec![(along("X"), |r| r.dx_mm), (along("Y"), |r| r.dy_mm)],
+            Self::Error => vec![(named, |r| r.error_mm)],
         }
     }
 }
@@ -81,16 +94,21 @@ pub const PASSES: usize = INKS.len();
 /// # Errors
 /// As [`panels`].
 pub fn trace(view: &View, passes: &[(&str, &[TraceRow])], columns: &[Column]) -> Result<Vec<u8>, Failure> {
-    let over = |rows: &[TraceRow], f: Of| rows.iter().map(|r| (r.s_mm, f(r))).collect::<Vec<_>>();
+    let unit = view.unit;
+    let over = |column: Column, rows: &[TraceRow], f: Of| {
+        rows.iter().map(|r| (unit.said(r.s_mm), column.said(unit, f(r)))).collect::<Vec<_>>()
+    };
     let diagrams = |column: &Column| match passes {
         [(_, rows)] => {
-            let curve = |(name, ink, f): (&'static str, Ink, Of)| Curve::new(name, ink, over(rows, f));
-            vec![Panel::new(column.unit(), column.single().into_iter().map(curve).collect())]
+            let curve = |(name, ink, f): (&'static str, Ink, Of)| Curve::new(name, ink, over(*column, rows, f));
+            vec![Panel::new(column.named(unit), column.single().into_iter().map(curve).collect())]
         }
         several => {
-            let curves =
-                |f: Of| several.iter().zip(INKS).map(move |((name, rows), ink)| Curve::new(*name, ink, over(rows, f)));
-            column.several().into_iter().map(|(unit, f)| Panel::new(unit, curves(f).collect())).collect()
+            let curves = |f: Of| {
+                let each = several.iter().zip(INKS);
+                each.map(move |((name, rows), ink)| Curve::new(*name, ink, over(*column, rows, f))).collect()
+            };
+            column.several(unit).into_iter().map(|(named, f)| Panel::new(named, curves(f))).collect()
         }
     };
     let title = if passes.len() == 1 { "One pass along the contour" } else { "Passes along the contour" };

@@ -2,6 +2,7 @@
 
 use truepath_chart::style::{INK_AFTER, INK_BEFORE, Ink};
 use truepath_correction::rows::CorrectionRow;
+use truepath_ground::length::Unit;
 use truepath_plant::{Milled, judged_trim_mm};
 
 use crate::TraceRow;
@@ -25,6 +26,12 @@ impl Place {
         let away = [centre[0] - wall[0], centre[1] - wall[1]];
         let length = away[0].hypot(away[1]);
         Self { s_mm, wall, free: [away[0] / length, away[1] / length], error_mm }
+    }
+
+    /// The same in a unit.
+    pub(super) fn said(&self, unit: Unit) -> Self {
+        let Self { s_mm, wall, free, error_mm } = *self;
+        Self { s_mm: unit.said(s_mm), wall: wall.map(|mm| unit.said(mm)), free, error_mm: unit.said(error_mm) }
     }
 
     /// The milled wall with its error drawn so many times larger.
@@ -77,6 +84,15 @@ impl Wall {
             wall("without correction", INK_BEFORE, |r| r.predicted_error_before_mm),
             wall("with correction", INK_AFTER, |r| r.predicted_error_after_mm),
         ]
+    }
+
+    /// The same in a unit.
+    pub(super) fn said(&self, unit: Unit) -> Self {
+        Self {
+            places: self.places.iter().map(|place| place.said(unit)).collect(),
+            name: self.name.clone(),
+            ink: self.ink,
+        }
     }
 
     /// The error along the contour.

@@ -12,6 +12,7 @@ use truepath_correction::second_pass;
 use truepath_correction::summary::CorrectSummary;
 use truepath_correction::warnings::misread;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Unit;
 use truepath_ground::output::OutputFolder;
 use truepath_job::feature::listing;
 use truepath_job::job::{PartFlags, ROUTES, Route, Said, one_of};
@@ -93,9 +94,10 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
 
 pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
     let (before, after) = (&s.surface.before, &s.surface.after);
-    let mut text = s.feature.as_ref().map(listing).unwrap_or_default();
+    let (unit, name) = (s.unit, s.unit.name());
+    let mut text = s.feature.as_ref().map(|feature| listing(feature, unit)).unwrap_or_default();
     if !s.contours.is_empty() {
-        text += &several::table(&s.contours);
+        text += &several::table(&s.contours, unit);
     }
     text += &format!(
         "{} points used, {} set aside; wall follows the {} force, {} milling\n\
@@ -103,50 +105,53 @@ pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
          {}\n\
          \n\
          largest wall error, by the model       {:>8}\n\
-         on the next part, 1 sigma              {:>8.4} mm\n\
-         \x20 of it by what the points leave open  {:>8.4} mm\n\
-         \x20 where the largest error is expected  {:>8.4} mm\n\
-         left over the height, beyond X and Y   {:>8.4} mm\n\
+         on the next part, 1 sigma              {:>8.4} {name}\n\
+         \x20 of it by what the points leave open  {:>8.4} {name}\n\
+         \x20 where the largest error is expected  {:>8.4} {name}\n\
+         left over the height, beyond X and Y   {:>8.4} {name}\n\
          floor {}\n\
          \n\
          at every height, with what the points leave open (± 2 sigma)\n\
-         \x20 without correction: the worst          {:>8.4} ± {:.4} mm, 95 % within {:.4} ± {:.4} mm, mean over the height {:.4} mm\n\
-         \x20 with it: the worst                     {:>8.4} ± {:.4} mm, 95 % within {:.4} ± {:.4} mm, mean over the height {:.4} mm\n\
+         \x20 without correction: the worst          {:>8.4} ± {:.4} {name}, 95 % within {:.4} ± {:.4} {name}, mean over the height {:.4} {name}\n\
+         \x20 with it: the worst                     {:>8.4} ± {:.4} {name}, 95 % within {:.4} ± {:.4} {name}, mean over the height {:.4} {name}\n\
          \x20 {}\n\
          \n\
-         deepest cut at any height              {:>8.4} mm\n\
-         largest correction                     {:>8.4} mm\n\
+         deepest cut at any height              {:>8.4} {name}\n\
+         largest correction                     {:>8.4} {name}\n\
          \n\
          identified                      value      sigma   before\n",
         s.points_used,
         s.points_rejected + s.points_outlying,
         s.wall_law,
         s.milling,
-        s.floor.promise(after),
-        s.floor.fall(s.max_error_before_mm, s.max_error_after_mm),
-        s.max_sigma_mm,
-        s.max_sigma_by_points_mm,
-        s.sigma_at_max_error_mm,
-        s.axial_form_error_mm,
-        s.floor.words(),
-        before.profile.profile_mm,
-        2.0 * before.profile.sigma_mm,
-        before.p95_mm,
-        2.0 * before.p95_sigma_mm,
-        before.mean_mm,
-        after.profile.profile_mm,
-        2.0 * after.profile.sigma_mm,
-        after.p95_mm,
-        2.0 * after.p95_sigma_mm,
-        after.mean_mm,
-        after.worst_words(),
-        s.worst_gouge_mm,
-        s.max_correction_mm,
+        s.floor.promise(unit, after),
+        s.floor.fall(unit, s.max_error_before_mm, s.max_error_after_mm),
+        unit.of(s.max_sigma_mm),
+        unit.of(s.max_sigma_by_points_mm),
+        unit.of(s.sigma_at_max_error_mm),
+        unit.of(s.axial_form_error_mm),
+        s.floor.words(unit),
+        unit.of(before.profile.profile_mm),
+        unit.of(2.0 * before.profile.sigma_mm),
+        unit.of(before.p95_mm),
+        unit.of(2.0 * before.p95_sigma_mm),
+        unit.of(before.mean_mm),
+        unit.of(after.profile.profile_mm),
+        unit.of(2.0 * after.profile.sigma_mm),
+        unit.of(after.p95_mm),
+        unit.of(2.0 * after.p95_sigma_mm),
+        unit.of(after.mean_mm),
+        after.worst_words(unit),
+        unit.of(s.worst_gouge_mm),
+        unit.of(s.max_correction_mm),
     );
-    for (name, p) in &s.identified {
+    for (parameter, p) in &s.identified {
         let seen = if p.observable { "" } else { "  not decided by the points" };
-        text +=
-            &format!("  {name:<24} {:>10.4} {:>10.4} {:>8.4} {:<5}{seen}\n", p.value + 0.0, p.sigma, p.prior, p.unit);
+        // What is identified is told in the units of the job's keys, but for lengths.
+        let [value, sigma, prior] =
+            [p.value + 0.0, p.sigma, p.prior].map(|v| if p.unit == "mm" { unit.of(v) } else { Unit::default().of(v) });
+        let own = if p.unit == "mm" { name } else { p.unit };
+        text += &format!("  {parameter:<24} {value:>10.4} {sigma:>10.4} {prior:>8.4} {own:<5}{seen}\n");
     }
     text += &format!("\nwritten to {}; to look at: {}\n", output.display(), output.join(REPORT).display());
     if let Some(name) = &s.corrected_program {

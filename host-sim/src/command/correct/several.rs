@@ -9,6 +9,7 @@ use truepath_correction::remarks::said_of_every;
 use truepath_correction::summary::{ContourSummary, CorrectSummary};
 use truepath_correction::warnings::misread;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Unit;
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::job::Route;
 use truepath_job::pass::Pass;
@@ -96,18 +97,20 @@ pub(super) fn run(
 }
 
 /// A line for each contour.
-pub(super) fn table(contours: &[ContourSummary]) -> String {
-    let mut text = format!(
-        "{:<24}{:<14}{:>8}{:>12}{:>12}{:>12}\n",
-        "contour", "lines", "points", "before mm", "after mm", "sigma mm"
-    );
+pub(super) fn table(contours: &[ContourSummary], unit: Unit) -> String {
+    let [before, after, sigma] = ["before", "after", "sigma"].map(|of| format!("{of} {}", unit.name()));
+    let mut text = format!("{:<24}{:<14}{:>8}{:>12}{:>12}{:>12}\n", "contour", "lines", "points", before, after, sigma);
     for one in contours {
         let lines = format!("{}-{}", one.lines[0], one.lines[1]);
         let _ = match &one.summary {
             Some(s) => writeln!(
                 text,
                 "{:<24}{lines:<14}{:>8}{:>12.4}{:>12.4}{:>12.4}",
-                one.contour, s.points_used, s.max_error_before_mm, s.max_error_after_mm, s.max_sigma_mm
+                one.contour,
+                s.points_used,
+                unit.of(s.max_error_before_mm),
+                unit.of(s.max_error_after_mm),
+                unit.of(s.max_sigma_mm)
             ),
             None => writeln!(text, "{:<24}{lines:<14}   not touched: stays as it is", one.contour),
         };

@@ -125,51 +125,52 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
 
 fn words(s: &LearnSummary) -> String {
     let (v, whole) = (&s.verdict, &s.whole_contour_error_mm);
+    let (unit, name) = (s.correct.unit, s.correct.unit.name());
     let (measured, surface) = (&s.measured_surface, &s.whole_surface);
     if !s.contours.is_empty() {
-        return several::table(&s.contours);
+        return several::table(&s.contours, unit);
     }
     let mut text = format!(
         "part {} at {} places, error of the target      largest      rms\n\
-         \x20 measured                           {:>12.4} {:>8.4} mm\n\
-         \x20 part {} there                       {:>12.4} {:>8.4} mm\n\
-         \x20 promised{}                    {:>12.4}          mm, {} of {} places within 2 sigma\n\
-         \x20 whole contour, by the model        {:>12.4}          mm, at s = {:.1} mm, sigma {:.4} mm\n\
+         \x20 measured                           {:>12.4} {:>8.4} {name}\n\
+         \x20 part {} there                       {:>12.4} {:>8.4} {name}\n\
+         \x20 promised{}                    {:>12.4}          {name}, {} of {} places within 2 sigma\n\
+         \x20 whole contour, by the model        {:>12.4}          {name}, at s = {:.1} {name}, sigma {:.4} {name}\n\
          at any height\n\
-         \x20 measured, at the touched heights   {:>12.4} ± {:.4} mm, 95 % within {:.4} mm\n\
+         \x20 measured, at the touched heights   {:>12.4} ± {:.4} {name}, 95 % within {:.4} {name}\n\
          \x20   {}\n\
-         \x20 whole wall, by the model           {:>12.4} ± {:.4} mm, 95 % within {:.4} ± {:.4} mm\n\
+         \x20 whole wall, by the model           {:>12.4} ± {:.4} {name}, 95 % within {:.4} ± {:.4} {name}\n\
          \x20   {}\n",
         v.part,
         v.measured_error_mm.places,
-        v.measured_error_mm.max_mm,
-        v.measured_error_mm.rms_mm,
+        unit.of(v.measured_error_mm.max_mm),
+        unit.of(v.measured_error_mm.rms_mm),
         v.previous_error_mm.part,
-        v.previous_error_mm.max_mm,
-        v.previous_error_mm.rms_mm,
+        unit.of(v.previous_error_mm.max_mm),
+        unit.of(v.previous_error_mm.rms_mm),
         if v.promise.max_mm < s.correct.floor_mm { ": floor" } else { "       " },
-        s.correct.floor.or(v.promise.max_mm),
+        unit.of(s.correct.floor.or(v.promise.max_mm)),
         v.promise.within_two_sigma,
         v.promise.places,
-        whole.max_mm,
-        whole.s_mm,
-        whole.sigma_mm,
-        measured.profile_mm,
-        2.0 * measured.sigma_mm,
-        measured.p95_mm,
-        measured.worst_words(),
-        surface.profile.profile_mm,
-        2.0 * surface.profile.sigma_mm,
-        surface.p95_mm,
-        2.0 * surface.p95_sigma_mm,
-        surface.worst_words(),
+        unit.of(whole.max_mm),
+        unit.of(whole.s_mm),
+        unit.of(whole.sigma_mm),
+        unit.of(measured.profile_mm),
+        unit.of(2.0 * measured.sigma_mm),
+        unit.of(measured.p95_mm),
+        measured.worst_words(unit),
+        unit.of(surface.profile.profile_mm),
+        unit.of(2.0 * surface.profile.sigma_mm),
+        unit.of(surface.p95_mm),
+        unit.of(2.0 * surface.p95_sigma_mm),
+        surface.worst_words(unit),
     );
     if let Some(held) = &v.holdout_residual_mm {
         text += &format!(
-            "\x20 at {} places kept from a first fit the model missed {:.4} mm before and {:.4} mm after learning\n",
+            "\x20 at {} places kept from a first fit the model missed {:.4} {name} before and {:.4} {name} after learning\n",
             held.places.len(),
-            held.before_mm,
-            held.after_mm
+            unit.of(held.before_mm),
+            unit.of(held.after_mm)
         );
     }
     if let Some(again) = v.used_again.filter(|_| v.rolled_back) {

@@ -9,6 +9,7 @@ use truepath_correction::remarks::said_of_every;
 use truepath_correction::surface::touched::TouchedSurface;
 use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::length::Unit;
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
@@ -26,6 +27,9 @@ use crate::terminal::Terminal;
 pub struct LearnedPlanSummary {
     /// Version of this file.
     version: u32,
+    /// The unit of the program, in which people are told.
+    #[serde(skip)]
+    unit: Unit,
     /// What was learned, where one contour was planned.
     #[serde(flatten)]
     learned: Option<LearnedContour>,
@@ -82,9 +86,9 @@ pub(super) fn main(
 }
 
 fn words(summary: &LearnedPlanSummary) -> String {
-    let mut text: String = summary.learned.iter().map(of_contour).collect();
+    let mut text: String = summary.learned.iter().map(|one| of_contour(one, summary.unit)).collect();
     for one in &summary.contours {
-        text += &format!("{}\n{}\n", one.contour.as_deref().unwrap_or_default(), of_contour(one));
+        text += &format!("{}\n{}\n", one.contour.as_deref().unwrap_or_default(), of_contour(one, summary.unit));
     }
     let next =
         summary.learned.iter().chain(&summary.contours).map(|one| one.verdict.part + 1).next().unwrap_or_default();
@@ -96,44 +100,44 @@ fn words(summary: &LearnedPlanSummary) -> String {
     )
 }
 
-fn of_contour(one: &LearnedContour) -> String {
-    let um = |mm: f64| mm * 1e3;
+fn of_contour(one: &LearnedContour, unit: Unit) -> String {
+    let (small, um, mm) = (|mm: f64| unit.small(mm), unit.small_name(), unit.name());
     let (verdict, plan, measured) = (&one.verdict, &one.plan, &one.measured_surface);
     let mut text = format!(
-        "part {} at {} points: largest error {:.1} um, rms {:.1} um; {:.1} ± {:.1} um were predicted for the worst place of the wall\n\
-         {} (2 sigma), 95 % of the points within {:.4} mm\n  {}\n\
-         the model of the parts before misses these points by {:.1} um (rms), that of all parts by {:.1} um\n",
+        "part {} at {} points: largest error {:.1} {um}, rms {:.1} {um}; {:.1} ± {:.1} {um} were predicted for the worst place of the wall\n\
+         {} (2 sigma), 95 % of the points within {:.4} {mm}\n  {}\n\
+         the model of the parts before misses these points by {:.1} {um} (rms), that of all parts by {:.1} {um}\n",
         verdict.part,
         verdict.points,
-        um(verdict.measured_max_mm),
-        um(verdict.measured_rms_mm),
-        um(verdict.promised_mm),
-        um(2.0 * verdict.promised_sigma_mm),
-        measured.words(),
-        measured.p95_mm,
-        measured.worst_words(),
-        um(verdict.missed_before_mm),
-        um(verdict.missed_after_mm),
+        small(verdict.measured_max_mm),
+        small(verdict.measured_rms_mm),
+        small(verdict.promised_mm),
+        small(2.0 * verdict.promised_sigma_mm),
+        measured.words(unit),
+        unit.of(measured.p95_mm),
+        measured.worst_words(unit),
+        small(verdict.missed_before_mm),
+        small(verdict.missed_after_mm),
     );
     if let Some([stretch, load]) = verdict.beside_mm {
         text += &format!(
-            "beside the machine, over arc length and height: {:.0} um where the wall differs by place, {:.0} um where the load is alike (one sigma)\n",
-            um(stretch),
-            um(load)
+            "beside the machine, over arc length and height: {:.0} {um} where the wall differs by place, {:.0} {um} where the load is alike (one sigma)\n",
+            small(stretch),
+            small(load)
         );
     }
     if let Some(choice) = plan.choices.get(one.chosen - 1) {
         text += &format!(
-            "\npart {}: {}\n  profile error {:.1} ± {:.1} um at every height, 95 % of the wall within {:.1} um, mean over the height {:.1} um, {:.0} % within {:.1} um\n  {}\n",
+            "\npart {}: {}\n  profile error {:.1} ± {:.1} {um} at every height, 95 % of the wall within {:.1} {um}, mean over the height {:.1} {um}, {:.0} % within {:.1} {um}\n  {}\n",
             verdict.part + 1,
-            choice.process,
-            um(choice.surface.profile.profile_mm),
-            um(2.0 * choice.surface.profile.sigma_mm),
-            um(choice.surface.p95_mm),
-            um(choice.surface.mean_mm),
+            choice.process_in(unit),
+            small(choice.surface.profile.profile_mm),
+            small(2.0 * choice.surface.profile.sigma_mm),
+            small(choice.surface.p95_mm),
+            small(choice.surface.mean_mm),
             choice.within_tolerance * 100.0,
-            um(plan.tolerance_mm),
-            choice.surface.worst_words(),
+            small(plan.tolerance_mm),
+            choice.surface.worst_words(unit),
         );
     }
     if plan.recommended.is_none() {
@@ -241,9 +245,10 @@ fn run(
     let shown: Vec<PlannedWall> =
         contours.iter().map(|one| PlannedWall { name: one.contour.clone(), plan: &one.plan }).collect();
     folder.write(REPORT, planned_page(&shown, &passes.first().map(program_name).unwrap_or_default()).as_bytes())?;
+    let unit = passes.first().map(Pass::unit).unwrap_or_default();
     let learned = if several { None } else { contours.pop() };
     let written = Written { learns: true, ..written };
-    let summary = LearnedPlanSummary { version: 1, learned, contours, written, warnings };
+    let summary = LearnedPlanSummary { version: 1, unit, learned, contours, written, warnings };
     folder.write("summary.json", &json(&summary)?)?;
     folder.commit()?;
     Ok(summary)

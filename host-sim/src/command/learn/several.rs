@@ -10,6 +10,7 @@ use truepath_correction::remarks::said_of_every;
 use truepath_correction::surface::touched::TouchedSurface;
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::files;
+use truepath_ground::length::Unit;
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::job::Route;
 use truepath_job::pass::Pass;
@@ -96,10 +97,11 @@ pub(super) fn run(
 }
 
 /// A line for each contour.
-pub(super) fn table(contours: &[ContourLearned]) -> String {
+pub(super) fn table(contours: &[ContourLearned], unit: Unit) -> String {
+    let measured = format!("measured {}", unit.name());
     let mut text = format!(
         "{:<24}{:>6}{:>8}{:>14}{:>14}{:>14}\n",
-        "contour", "part", "places", "measured mm", "part before", "whole contour"
+        "contour", "part", "places", measured, "part before", "whole contour"
     );
     for one in contours {
         let v = &one.summary.verdict;
@@ -110,9 +112,9 @@ pub(super) fn table(contours: &[ContourLearned]) -> String {
             one.contour,
             v.part,
             v.measured_error_mm.places,
-            v.measured_error_mm.max_mm,
-            v.previous_error_mm.max_mm,
-            one.summary.whole_contour_error_mm.max_mm,
+            unit.of(v.measured_error_mm.max_mm),
+            unit.of(v.previous_error_mm.max_mm),
+            unit.of(one.summary.whole_contour_error_mm.max_mm),
             if v.rolled_back { "  rolled back" } else { "" }
         );
     }

@@ -19,6 +19,7 @@ use truepath_chart::raster::png;
 use truepath_chart::view::View;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::files;
+use truepath_ground::length::Unit;
 use truepath_ground::output::OutputFile;
 use truepath_ground::sheet::{names as names_of, read_bounded};
 use truepath_job::job::Which;
@@ -102,10 +103,13 @@ struct Picture {
     /// The picture: .svg or .png.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// First place shown, mm along the contour.
+    /// Draw in inches; --from and --to are then in inches, too.
+    #[arg(long)]
+    inch: bool,
+    /// First place shown along the contour, mm.
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     from: Option<f64>,
-    /// Last place shown, mm along the contour.
+    /// Last place shown along the contour, mm.
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     to: Option<f64>,
     /// Width, 1/96 inch on paper.
@@ -128,7 +132,9 @@ struct Picture {
 impl Picture {
     fn view(&self, magnify: Option<f64>) -> View {
         let Self { from, to, width, height, .. } = *self;
-        View { title: self.title.clone(), width, height, from_mm: from, to_mm: to, magnify }
+        let unit = if self.inch { Unit::Inch } else { Unit::Millimetre };
+        let [from_mm, to_mm] = [from, to].map(|at| at.map(|said| unit.in_mm(said)));
+        View { title: self.title.clone(), width, height, from_mm, to_mm, magnify, unit }
     }
 }
 

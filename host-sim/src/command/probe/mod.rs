@@ -13,6 +13,7 @@ use truepath_correction::verification::{
 };
 use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::length::Unit;
 use truepath_ground::output::OutputFile;
 use truepath_job::dimension::{INSTRUMENTS, Instrument};
 use truepath_job::job::{Assumed, JobFile, ProbeFlags, Which, one_of};
@@ -125,7 +126,8 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
 }
 
 fn words(report: &Report) -> String {
-    let mut text = String::from(" point      s mm       X mm       Y mm       Z mm\n");
+    let (unit, name) = (report.unit, report.unit.name());
+    let mut text = format!(" point      s {name}       X {name}       Y {name}       Z {name}\n");
     let mut last = usize::MAX;
     let mut contour = None;
     for p in &report.points {
@@ -139,10 +141,10 @@ fn words(report: &Report) -> String {
             if let Some(gain) = p.gain {
                 let _ = writeln!(
                     text,
-                    "       corrected wall least certain at s = {:.2} mm: {:.4} mm -> {:.4} mm (one sigma){}",
-                    gain.worst_s_mm,
-                    gain.max_sigma_before_mm,
-                    gain.max_sigma_after_mm,
+                    "       corrected wall least certain at s = {:.2} {name}: {:.4} {name} -> {:.4} {name} (one sigma){}",
+                    unit.of(gain.worst_s_mm),
+                    unit.of(gain.max_sigma_before_mm),
+                    unit.of(gain.max_sigma_after_mm),
                     if gain.worth_it { "" } else { ", below the noise of a reading" }
                 );
             }
@@ -151,7 +153,12 @@ fn words(report: &Report) -> String {
         let _ = writeln!(
             text,
             "{:>6} {:>9.2} {:>10.4} {:>10.4} {:>10.4}  {}",
-            p.id, p.s_mm, p.x_mm, p.y_mm, p.z_mm, p.why_height
+            p.id,
+            unit.of(p.s_mm),
+            unit.of(p.x_mm),
+            unit.of(p.y_mm),
+            unit.of(p.z_mm),
+            p.why_height
         );
     }
     if let Some(why) = &report.heights_why {
@@ -169,7 +176,8 @@ fn words(report: &Report) -> String {
         "predicted wall"
     };
     if let (Some(before), Some(after)) = (report.wall_sigma_before_mm, report.wall_sigma_after_mm) {
-        let _ = writeln!(text, "\n{wall}, one sigma: {before:.4} mm before the touches, {after:.4} mm after");
+        let (before, after) = (unit.of(before), unit.of(after));
+        let _ = writeln!(text, "\n{wall}, one sigma: {before:.4} {name} before the touches, {after:.4} {name} after");
     } else {
         text += "\nthe stock is touched, before the finishing pass: name the results in stock.probe of the job\n";
     }
@@ -178,9 +186,9 @@ fn words(report: &Report) -> String {
     }
     let _ = writeln!(
         text,
-        "safe height Z{:.3} mm, stand-off {:.3} mm before the wall{}",
-        report.safe_z_mm,
-        report.clearance_mm,
+        "safe height Z{:.3} {name}, stand-off {:.3} {name} before the wall{}",
+        unit.of(report.safe_z_mm),
+        unit.of(report.clearance_mm),
         report.probe_format.map_or_else(String::new, |f| format!("; read the results with [probe] format = \"{f}\""))
     );
     text
@@ -235,6 +243,9 @@ pub struct Kept {
 /// What was planned.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Report {
+    /// The unit of the program, in which people are told.
+    #[serde(skip)]
+    pub unit: Unit,
     /// The control; absent when no program was written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dialect: Option<ProbeDialect>,
@@ -339,6 +350,7 @@ pub fn report(plan: &Plan, dialect: Option<ProbeDialect>) -> Report {
     });
     let sigma = plan.wall_sigma_mm.map(|sigma| (!plan.before_the_pass).then_some(sigma));
     Report {
+        unit: plan.program.units.into(),
         dialect,
         probe_format: dialect.map(ProbeDialect::probe_format),
         points: points.collect(),
