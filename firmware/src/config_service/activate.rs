@@ -44,6 +44,7 @@ impl<'a, F: NorFlash> Handler<'a, F> {
     }
 
     /// Raises the counter of the image that was put in use. If the flash does not take it, none is in use.
+    #[inline(never)]
     fn count(&mut self, counted: Option<Counted>, servo: &mut impl ServoAccess<'a>) -> Result<(), Denial> {
         let Some(counted) = counted else { return Ok(()) };
         if let Err(failed) = self.ledger.raise(&mut self.flash, &counted) {
@@ -74,6 +75,9 @@ impl<'a, F: NorFlash> Handler<'a, F> {
     }
 
     /// Reads the image of a slot into the buffer and puts it in use; gives the counter of a signed one.
+    ///
+    /// Not inlined, as what else is done seldom: every request stands upon the frame of the service.
+    #[inline(never)]
     pub fn load(
         &mut self,
         wanted: ActiveImage,

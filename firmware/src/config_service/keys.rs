@@ -29,6 +29,7 @@ impl<'a, F: NorFlash> Handler<'a, F> {
     }
 
     /// Trusts one more key. An image in use that is not signed with one of the keys is in use no more.
+    #[inline(never)]
     pub fn provision<'s>(&mut self, key: PublicKey, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         self.attended(servo)?;
         self.ledger.provision(&mut self.flash, key)?;
@@ -36,6 +37,7 @@ impl<'a, F: NorFlash> Handler<'a, F> {
     }
 
     /// Trusts a key no more. An image in use that is signed with it is in use no more.
+    #[inline(never)]
     pub fn revoke<'s>(&mut self, key: KeyId, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         self.attended(servo)?;
         self.ledger.revoke(&mut self.flash, key)?;

@@ -150,6 +150,7 @@ impl Ledger {
         })
     }
     /// Writes all that is remembered into the other sector.
+    #[inline(never)]
     fn change_sector<F: NorFlash>(&mut self, flash: &mut F) -> Result<(), JournalFailed> {
         self.journal.leave_sector();
         let now = self.now;
@@ -180,6 +181,7 @@ impl Ledger {
     ///
     /// # Errors
     /// The flash did not take it.
+    #[inline(never)]
     pub fn raise<F: NorFlash>(&mut self, flash: &mut F, to: &Counted) -> Result<(), JournalFailed> {
         if self.journal.raise(flash, to) {
             return Ok(());

@@ -220,3 +220,22 @@ fn power_that_fails_at_every_start_leaves_the_next_change_its_place() {
     assert!(nor.wear().programmed_words - before < 32, "at the first attempt");
     assert!(Ledger::open(&mut nor).now().is_spent(&part(1)) && Ledger::open(&mut nor).now().is_spent(&part(2)));
 }
+
+#[test]
+fn records_of_a_firmware_without_counters_in_the_places_behind_are_found_and_left_for_the_other_sector() {
+    use truepath_core::image::{Binding, Counted};
+    let mut nor = erased();
+    for (place, sequence) in [(PLACES - 1, 1), (PLACES, 2), (PLACES + 2, 3), (PLACES + 4, 4)] {
+        let bytes = payload(sequence);
+        record(&mut nor, 0, place, sequence, &bytes, crc32(&bytes));
+    }
+    let mut ledger = Ledger::open(&mut nor);
+    assert_eq!(ledger.now().boots, 4);
+    // Between them there are blank words, which may hold counters; a record goes to the other sector.
+    let counted = Counted::of(&Binding::default(), 7);
+    ledger.raise(&mut nor, &counted).unwrap();
+    ledger.change(&mut nor, |now| now.boots = 5).unwrap();
+    let ledger = Ledger::open(&mut nor);
+    assert_eq!((ledger.now().boots, nor.wear().erased_sectors), (5, 1));
+    assert!((1..=4).all(|boots| boots == 4 || !ledger.now().is_spent(&part(boots))) && ledger.now().is_spent(&part(4)));
+}

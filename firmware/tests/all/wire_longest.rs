@@ -8,7 +8,7 @@ use crate::wire_support;
 use embedded_storage::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
 use truepath_core::image::DeviceClass;
 use truepath_core::link::{
-    Ask, CHUNK_BYTES, DeviceSettings, Item, PACKET_BYTES, Request, ResetCause, Response, decode, encode,
+    Ask, CHUNK_BYTES, DeviceSettings, Item, PACKET_BYTES, Reply, Request, ResetCause, Response, Slot, decode, encode,
 };
 use truepath_fw::computation::ProgressMeter;
 use truepath_fw::config_service::{Board, IMAGE_BYTES, Memory};
@@ -69,7 +69,7 @@ struct Meter {
 }
 
 impl Meter {
-    fn new() -> Self {
+    fn new(present: bool) -> Self {
         fn lent<T: Clone>(blank: T, count: usize) -> &'static mut [T] {
             vec![blank; count].leak()
         }
@@ -86,7 +86,7 @@ impl Meter {
             meter: Box::leak(Box::new(ProgressMeter::new())),
         };
         let work = Work::default();
-        let board = Board { name: "test", last_reset: ResetCause::PowerOn, class: DeviceClass::Bench, present: false };
+        let board = Board { name: "test", last_reset: ResetCause::PowerOn, class: DeviceClass::Bench, present };
         let device = Device::start(Counted(bank, Rc::clone(&work)), memory, board, 0);
         Self { device, work, id: 0, most: vec![] }
     }
@@ -129,7 +129,7 @@ fn largest(first: i64) -> Vec<u8> {
 
 #[test]
 fn no_request_makes_the_device_do_more_than_a_slot_is_large() {
-    let mut meter = Meter::new();
+    let mut meter = Meter::new(false);
     meter.ask(Ask::Configure(DeviceSettings::at_1_khz()));
     let images = [largest(0), largest(7)];
     for (slot, image) in images.iter().enumerate() {
@@ -174,4 +174,57 @@ fn no_request_makes_the_device_do_more_than_a_slot_is_large() {
     assert_eq!(cost("Compute"), Some([0; 3]));
     assert!(cost("Commit") > Some([SLOT_IMAGE_BYTES, 0, 0]), "the largest image was measured");
     assert_eq!(meter.most.len(), 13);
+}
+
+/// An image of a feature, four nodes long, signed with a counter.
+fn counted_image(feature: u32, counter: u32) -> Vec<u8> {
+    let settings = part::settings();
+    let binding = truepath_core::image::Binding { feature, ..settings.binding };
+    let settings = truepath_core::image::ImageSettings { binding, ..settings };
+    let plain = image_with(&settings, straight(0)[..4].to_vec());
+    counted(&plain, &owner(1), truepath_core::image::DeviceClasses::ALL, counter)
+}
+
+#[test]
+fn counters_of_as_many_passes_as_there_are_cost_a_request_a_bounded_reading() {
+    let mut meter = Meter::new(true);
+    meter.ask(Ask::Configure(DeviceSettings::at_1_khz()));
+    for seed in 1..=4 {
+        meter.ask(Ask::Provision(public(&owner(seed))));
+    }
+    // So often that the page of counters is used up, and the sector is changed with all of them in it.
+    for k in 0..300 {
+        let image = counted_image(k % 64, 1_000 + k);
+        meter.upload(Item::Image, &image, name(&image));
+        let held = slot_of(&mut meter, name(&image));
+        meter.ask(Ask::Activate { slot: held, crc: name(&image) });
+    }
+    // And by records alone.
+    for k in 0..130 {
+        meter.ask(Ask::Configure(DeviceSettings { silence_us: 20_000 + k, ..DeviceSettings::at_1_khz() }));
+    }
+    let cost = |wanted: &str| meter.most.iter().find(|(kind, _)| kind == wanted).map(|(_, work)| *work).unwrap();
+    for (kind, read, programmed) in
+        [("Activate", 800 << 10, 120), ("Configure", 400 << 10, 120), ("Commit", 32 << 10, 1)]
+    {
+        let [bytes, words, sectors] = cost(kind);
+        assert!(
+            bytes <= read && words <= programmed && sectors <= 1,
+            "{kind}: {bytes} bytes, {words} words, {sectors}"
+        );
+        println!("{kind}: {bytes} bytes read, {words} words, {sectors} sectors");
+    }
+    assert_eq!((cost("Activate")[2], cost("Configure")[2]), (1, 1), "the sector was changed by both");
+}
+
+/// Where an image lies.
+fn slot_of(meter: &mut Meter, crc: u32) -> u8 {
+    let mut packet = [0; PACKET_BYTES];
+    let used = encode(&Request { id: 0, ask: Ask::List }, &mut packet).unwrap();
+    let mut answer = vec![];
+    meter.device.config_bytes(&packet[..used], 0, |bytes| answer.extend_from_slice(bytes));
+    answer.pop();
+    let response: Response<'_> = decode(&mut answer).unwrap();
+    let Ok(Reply::Slots(slots)) = response.answer else { panic!() };
+    slots.iter().position(|slot| matches!(slot, Slot::Image { crc: found, .. } if *found == crc)).unwrap() as u8
 }

@@ -47,6 +47,7 @@ fn asks(image: &[u8]) -> Vec<Ask<'_>> {
         Ask::Restart { watchdog: false },
         Ask::Keys,
         Ask::Provision(public(&owner(1))),
+        Ask::Revoke(public(&owner(1)).id()),
     ]
 }
 

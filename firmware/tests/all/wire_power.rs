@@ -111,7 +111,7 @@ fn an_upload_goes_on_after_a_power_cut_without_sending_everything_again() {
 
 #[test]
 fn the_ledger_never_loses_an_arming_it_has_answered_for() {
-    // Around the change of the sector, which happens once in 128 records.
+    // Around the change of the sector, which happens once in 123 records.
     const FIRST: u32 = 120;
     let image = image_of(straight(0)[..4].to_vec());
     let mut rig = Rig::new();

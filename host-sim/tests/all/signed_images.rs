@@ -118,6 +118,31 @@ fn an_image_is_signed_for_classes_of_devices() {
 }
 
 #[test]
+fn the_counter_is_the_time_of_the_signing_and_of_an_image_signed_again_always_higher() {
+    let desk = desk();
+    let before = truepath_job::signing::now().unwrap();
+    let first = desk.call("image sign part.tpi --key shop.key -o first.tpi");
+    let (counter, after) = (first["counter"].as_u64().unwrap(), truepath_job::signing::now().unwrap());
+    assert!((u64::from(before)..=after.into()).contains(&counter));
+    assert_eq!(
+        (first["before"].clone(), desk.call("image first.tpi")["signature_counter"].as_u64()),
+        (Value::Null, Some(counter))
+    );
+    // A clock that stood in the future, and the way back from it.
+    desk.call("image sign part.tpi --key shop.key --counter 4000000000 -o future.tpi");
+    let again = desk.call("image sign future.tpi --key stranger.key -o again.tpi");
+    assert_eq!(
+        (again["counter"].as_u64(), again["before"]["counter"].as_u64()),
+        (Some(4_000_000_001), Some(4_000_000_000))
+    );
+    assert_eq!(again["before"]["key"], first["key"]);
+    assert_eq!(desk.call("image verify again.tpi --key stranger.key.pub")["counter"], 4_000_000_001u32);
+    let past = desk.call("image sign future.tpi --key shop.key --counter 5 -o past.tpi");
+    assert_eq!(past["counter"], 5);
+    assert_eq!(refused(&desk, "image sign part.tpi --key shop.key --counter 4294967296 -o x.tpi")["code"], "C001");
+}
+
+#[test]
 fn wrong_key_files_are_named_with_their_line() {
     let desk = desk();
     let sign = |key: &str| refused(&desk, &format!("image sign part.tpi --key {key} -o x.tpi"));

@@ -152,9 +152,30 @@ fn a_device_with_a_key_takes_what_is_signed_with_it_and_says_what_to_do_about_an
     assert!(other.contains("key") && board.contains("board"), "{other} {board}");
     ask(&["upload", &file("good.tpi"), "--activate"]);
     assert!(ask(&["list"]).contains("ACTIVE"));
-    // Behind a reset nobody holds the button: no further key, and the image in use is verified anew.
+    // The image in use is verified anew behind a reset.
     ask(&["restart"]);
     assert!(ask(&["list"]).contains("ACTIVE"));
+
+    // One that was signed earlier, and the way back to it.
+    let sign = |image: &str, counter: &[&str], name: &str| {
+        let (key, to) = (file("shop.key"), file(name));
+        call(&[&["image", "sign", image, "--key", &key, "-o", &to], counter].concat());
+    };
+    sign(&plain, &["--counter", "1000"], "older.tpi");
+    let older = refused(&file("older.tpi"));
+    assert!(older.contains("1000") && older.contains("sign this one again"), "{older}");
+    sign(&file("older.tpi"), &[], "again.tpi");
+    ask(&["upload", &file("again.tpi"), "--activate"]);
+
+    // A key that got out.
+    let keys: serde_json::Value = serde_json::from_str(&ask(&["--json", "keys"])).unwrap();
+    let key = keys["keys"][0].as_str().unwrap().to_owned();
+    assert_eq!(device(folder.path(), &["revoke", "0123456789abcdef"]).0, 1, "not one that is there");
+    assert_eq!(device(folder.path(), &["revoke", &key[1..]]).0, 1);
+    let said = ask(&["revoke", &key]);
+    assert!(said.contains("CLOSED") && said.contains(&format!("revoked for ever: {key}")), "{said}");
+    assert!(ask(&["info"]).contains("no image") && ask(&["info"]).contains("CLOSED"));
+    assert!(refused(&file("again.tpi")).contains("revoked") && refused(&plain).contains("not signed"));
 }
 
 /// So many setpoints to the device behind the socket, each a millisecond after the one before.

@@ -88,6 +88,7 @@ fn types_have_the_fields_of_the_table_in_its_order() {
         format!("{:?}", hello()),
         format!("{:?}", status()),
         format!("{:?}", keys()),
+        format!("{:?}", keys().keys),
         format!("{:?}", ActiveImage { slot: 0, crc: 0 }),
         format!("{:?}", counters()),
         format!("{:?}", sample()),

@@ -26,6 +26,14 @@ pub const NAME: &str = "nucleo-h743zi2";
 
 /// Runs the device. Called once, by the entry of the image.
 pub fn run() -> ! {
+    background(set_up())
+}
+
+/// Everything but the background thread.
+///
+/// Not inlined: its frame holds the whole device several times, and the on-board correction is not to stand upon it.
+#[inline(never)]
+fn set_up() -> &'static SharedConfiguration<Bank2> {
     static SERVO: StaticCell<Servo<'static>> = StaticCell::new();
     static CONFIGURATION: StaticCell<SharedConfiguration<Bank2>> = StaticCell::new();
 
@@ -80,7 +88,7 @@ pub fn run() -> ! {
     config_executor.spawn(token(config_task(receiver, sender, configuration)));
     setpoint_executor.spawn(token(tick()));
     watchdog::start(p.IWDG1);
-    background(configuration)
+    configuration
 }
 
 /// Why the last reset happened; clears the flags (RM0433, 8.7.37).

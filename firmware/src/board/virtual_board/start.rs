@@ -23,6 +23,14 @@ pub const NAME: &str = "virtual";
 
 /// Runs the device. Called once, by the entry of the image.
 pub fn run() -> ! {
+    background(set_up())
+}
+
+/// Everything but the background thread.
+///
+/// Not inlined: its frame holds the whole device several times, and the on-board correction is not to stand upon it.
+#[inline(never)]
+fn set_up() -> &'static SharedConfiguration<Nor<'static>> {
     static SETPOINT_RING: StaticCell<Queue<u8, RING>> = StaticCell::new();
     static CONFIG_RING: StaticCell<Queue<u8, RING>> = StaticCell::new();
     static SERVO: StaticCell<Servo<'static>> = StaticCell::new();
@@ -60,5 +68,5 @@ pub fn run() -> ! {
         _ => unreachable!("each task has one place, and this is its only use"),
     }
     clock::start();
-    background(configuration)
+    configuration
 }

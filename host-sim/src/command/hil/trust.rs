@@ -7,10 +7,10 @@ use std::time::Duration;
 use serde::Serialize;
 use truepath_bench::{BenchError, Board, Client, Wire, restart};
 use truepath_core::checksum::crc32;
-use truepath_core::image::{
-    DeviceClass, DeviceClasses, Image, ImageError, KeyId, SIGNATURE_BYTES, SignatureError, Signed,
+use truepath_core::image::{DeviceClass, DeviceClasses, ImageError, KeyId, SIGNATURE_BYTES, SignatureError, Signed};
+use truepath_core::link::{
+    Ask, CHUNK_BYTES, Denial, Item, PACKET_BYTES, Reply, Request, Response, Slot, decode, encode,
 };
-use truepath_core::link::{Ask, CHUNK_BYTES, Denial, Item, PACKET_BYTES, Reply, Request, Response, decode, encode};
 use truepath_ground::diagnostics::Failure;
 use truepath_job::signing::Signer;
 
@@ -163,7 +163,7 @@ impl Tried<'_> {
         let crc = name(image);
         let done = {
             let mut client = self.board.client();
-            let there = |slot: &truepath_core::link::Slot| matches!(slot, truepath_core::link::Slot::Image { crc: found, .. } if *found == crc);
+            let there = |slot: &Slot| matches!(slot, Slot::Image { crc: found, .. } if *found == crc);
             let slot = client.slots()?.iter().position(there).unwrap_or(2) as u8;
             client.done(Ask::Activate { slot, crc })
         };
@@ -276,6 +276,7 @@ fn changed(image: &[u8]) -> Vec<u8> {
 mod tests {
     use super::*;
     use truepath_bench::{BulkBoard, InProcess};
+    use truepath_core::image::Image;
 
     #[test]
     fn a_board_without_its_button_held_and_one_that_has_a_key_are_told_so() {
