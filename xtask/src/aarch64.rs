@@ -30,10 +30,8 @@ pub fn remedy() -> String {
 /// When it does not build.
 pub fn built(profile: &str) -> Result<Option<PathBuf>, Failure> {
     let there = || [LINKER, EMULATOR].iter().all(|tool| succeeds(program(tool).arg("--version")));
-    if !there() && !(may_install() && install(&PACKAGES).is_ok() && there()) {
-        return Ok(None);
-    }
-    let Ok(toolchain) = Toolchain::find_for(TRIPLE) else { return Ok(None) };
+    let have_tools = there() || (may_install() && install(&PACKAGES).is_ok() && there());
+    let Some(toolchain) = have_tools.then(|| Toolchain::find_for(TRIPLE).ok()).flatten() else { return Ok(None) };
     // A directory of its own: another compiler would rebuild everything else.
     let directory = target().join("aarch64");
     let mut command = toolchain.cargo_with("std");
