@@ -151,7 +151,8 @@ mod tests {
         assert_eq!(inches(25_400, 25_300), "0.00100 of ±0.001 in");
         assert_eq!(inches(25_400, 25_450), "0.001002 of ±0.001 in");
         assert_eq!(inches(25_400, 25_401), "0.00100004 of ±0.001 in");
-        assert_eq!(inches(20_000, 20_010), "0.000788 of ±0.0007874 in");
+        assert_eq!(inches(20_000, 20_010), "0.00079 of ±0.0007874 in");
+        assert_eq!(inches(20_000, 19_990), "0.000787 of ±0.0007874 in");
     }
 
     #[test]
