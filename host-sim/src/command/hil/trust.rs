@@ -7,7 +7,7 @@ use std::time::Duration;
 use serde::Serialize;
 use truepath_bench::{BenchError, Board, Client, Wire, restart};
 use truepath_core::checksum::crc32;
-use truepath_core::image::{DeviceClass, DeviceClasses, ImageError, KeyId, SIGNATURE_BYTES, SignatureError, Signed};
+use truepath_core::image::{DeviceClass, DeviceClasses, ImageError, KeyId, SIGNATURE_BYTES, SignatureError};
 use truepath_core::link::{
     Ask, CHUNK_BYTES, Denial, Item, PACKET_BYTES, Reply, Request, Response, Slot, decode, encode,
 };
@@ -276,7 +276,7 @@ fn changed(image: &[u8]) -> Vec<u8> {
 mod tests {
     use super::*;
     use truepath_bench::{BulkBoard, InProcess};
-    use truepath_core::image::Image;
+    use truepath_core::image::{Image, Signed};
 
     #[test]
     fn a_board_without_its_button_held_and_one_that_has_a_key_are_told_so() {
