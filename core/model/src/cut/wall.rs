@@ -41,7 +41,7 @@ pub(crate) struct Sought<'a> {
     machine: &'a Loop<'a>,
     states: &'a [State],
     fraction: Real,
-    teeth: Teeth,
+    teeth: &'a mut Teeth,
     known: &'a mut [Vector],
 }
 
@@ -49,10 +49,16 @@ impl<'a> Sought<'a> {
     /// A displacement that nobody has asked for.
     const UNKNOWN: Vector = Vector { x: Offset::MAX, y: Offset::MAX };
 
-    /// Of a machine at a fraction of the engaged depth; `known` is as long as `states`.
-    pub(crate) fn new(machine: &'a Loop<'a>, states: &'a [State], fraction: Real, known: &'a mut [Vector]) -> Self {
+    /// Of a machine at a fraction of the engaged depth; `known` is as long as `states`. The teeth are lent, so that they are on the stack
+    /// once.
+    pub(crate) fn new(
+        machine: &'a Loop<'a>,
+        states: &'a [State],
+        fraction: Real,
+        (teeth, known): (&'a mut Teeth, &'a mut [Vector]),
+    ) -> Self {
         known.fill(Self::UNKNOWN);
-        Self { machine, states, fraction, teeth: Teeth::BLANK, known }
+        Self { machine, states, fraction, teeth, known }
     }
 }
 
@@ -61,7 +67,7 @@ impl Displacements for Sought<'_> {
     fn displacement(&mut self, slot: usize) -> Option<Vector> {
         let known = self.known.get_mut(slot)?;
         if *known == Self::UNKNOWN {
-            *known = self.machine.at_height(&mut self.teeth, self.states.get(slot)?, self.fraction);
+            *known = self.machine.at_height(self.teeth, self.states.get(slot)?, self.fraction);
         }
         Some(*known)
     }

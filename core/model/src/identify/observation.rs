@@ -1,7 +1,7 @@
 //! What was probed, and what the model says the probe should have found there.
 
 use super::parameters::{COUNT, Parameters};
-use crate::cut::{Envelope, ForceTable, Loop, Path, Sought, State};
+use crate::cut::{Envelope, ForceTable, Loop, Path, Sought, State, Teeth};
 use truepath_units::geometry::{Direction, Vector};
 use truepath_units::{Offset, Real, hypot_nm};
 
@@ -267,7 +267,8 @@ impl Neighbourhood {
         };
         let states = workspace.states.get(..count).unwrap_or_default();
         let displacements = workspace.displacements.get_mut(..count).unwrap_or_default();
-        wall_at(path, from, Sought::new(machine, states, height, displacements), s)
+        let mut teeth = Teeth::BLANK;
+        wall_at(path, from, Sought::new(machine, states, height, (&mut teeth, displacements)), s)
     }
 }
 
