@@ -12,7 +12,7 @@ use truepath_ground::output::OutputFile;
 use truepath_ground::units::nm;
 use truepath_job::job::JobFile;
 
-use super::Options;
+use super::options::Options;
 use crate::terminal::Terminal;
 
 /// Most dimensions of a sheet.
