@@ -125,8 +125,8 @@ fn turned<'b>(joints: impl Iterator<Item = (&'b Block, &'b Block)>, window: Offs
 fn cut_away(
     [left, right]: [&mut [Sample]; 2],
     limit: Offset,
-    mark: fn(&mut Sample),
-    parallel: fn(&Sample, Offset) -> Point,
+    mark: impl Fn(&mut Sample),
+    parallel: impl Fn(&Sample, Offset) -> Point,
     radius: Offset,
 ) {
     for sample in left.iter_mut().rev() {

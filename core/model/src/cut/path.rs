@@ -115,10 +115,7 @@ impl<'a> Path<'a> {
         let inside = |s: &&Sample| s.s >= Offset::ZERO && s.s <= contour.length();
         let first = samples.iter().take_while(|s| s.s < Offset::ZERO).count();
         let count = samples.iter().filter(inside).count();
-        let gap = |f: fn(&Sample) -> Point| {
-            samples.iter().zip(samples.iter().skip(1)).map(|(a, b)| f(a).distance(f(b))).max().unwrap_or_default()
-        };
-        let (step, stock_step) = (gap(|s| s.point), gap(|s| s.stock));
+        let (step, stock_step) = (widest(samples, |s| s.point), widest(samples, |s| s.stock));
         let crowds = |(a, b): (&Sample, &Sample)| a.point.distance(b.point).nm().saturating_mul(8) < step.nm();
         let crowded = samples.iter().zip(samples.iter().skip(1)).any(crowds);
         let (closed, helix) = (closes_smoothly(contour, setup), setup.helix());
@@ -135,9 +132,8 @@ impl<'a> Path<'a> {
             *slot = Sample { stock: sample.stock + sample.normal.times(shift(sample)), ..*sample };
         }
         let samples: &'b [Sample] = used;
-        let gaps = samples.iter().zip(samples.iter().skip(1)).map(|(a, b)| a.stock.distance(b.stock));
         let Self { first, count, step, crowded, closed, stocked, setup, helix, .. } = *self;
-        let stock_step = gaps.max().unwrap_or_default();
+        let stock_step = widest(samples, |s| s.stock);
         Path { samples, first, count, step, stock_step, crowded, closed, stocked, setup, helix }
     }
 
@@ -250,6 +246,12 @@ impl<'a> Path<'a> {
             _ => after,
         }
     }
+}
+
+/// The largest distance from one point of the samples to the next.
+fn widest(samples: &[Sample], of: impl Fn(&Sample) -> Point) -> Offset {
+    let pairs = samples.iter().zip(samples.iter().skip(1));
+    pairs.map(|(a, b)| of(a).distance(of(b))).max().unwrap_or_default()
 }
 
 /// The line at which a path has had more than [`MOST_CORNERS`] sharp corners within one diameter of the cutter.
