@@ -20,4 +20,4 @@ GRANT UPDATE (value) ON counter TO truepath_operator;
 GRANT UPDATE (cut_nm) ON cutter TO truepath_operator;
 GRANT UPDATE (make) ON machine TO truepath_operator;
 GRANT UPDATE (parent) ON correction TO truepath_operator;
-GRANT UPDATE (serial, machine, holder, cutter, cutter_serial, material) ON part TO truepath_operator;
+GRANT UPDATE (serial, machine, holder, cutter, cutter_serial, material, temperature_c) ON part TO truepath_operator;

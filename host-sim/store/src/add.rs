@@ -35,6 +35,8 @@ pub struct Setup {
     pub names: StoreNames,
     /// The stick-out of the cutter, nm; 0 where it is not known.
     pub stickout_nm: i64,
+    /// How warm the part was that was measured last, °C.
+    pub temperature_c: Option<f64>,
     /// The command that puts it in, for the log of events.
     pub by: &'static str,
 }
@@ -180,6 +182,7 @@ fn add_part(
     let cut_with = part.correction.as_ref().map(|nodes| correction(on, job, nodes)).transpose()?;
     let serial = setup.names.serial.as_ref().filter(|_| last);
     let very_cutter = setup.names.cutter_serial.as_ref();
+    let temperature_c = setup.temperature_c.filter(|_| last);
     let by =
         [("job", job.into()), ("number", i64::from(part.number).into()), ("probe_crc32", (&part.probe_crc32).into())];
     let more = [
@@ -191,6 +194,7 @@ fn add_part(
         ("cutter_serial", very_cutter.into()),
         ("material", shop.material.into()),
         ("cut_nm", cut_nm.into()),
+        ("temperature_c", temperature_c.into()),
         ("stored", now().into()),
     ];
     let (id, new) = known(on, "part", &by, &more, true)?;
@@ -205,8 +209,11 @@ fn add_part(
             on.change(cut, &values![row.integer(0)?, cutter])?;
         }
         let say = "UPDATE part SET serial = COALESCE(serial, $1), machine = COALESCE(machine, $2), holder = COALESCE(holder, $3), \
-                   cutter = COALESCE(cutter, $4), material = COALESCE(material, $5), cutter_serial = COALESCE(cutter_serial, $6) WHERE id = $7";
-        on.change(say, &values![serial, shop.machine, shop.holder, shop.cutter, shop.material, very_cutter, id])?;
+                   cutter = COALESCE(cutter, $4), material = COALESCE(material, $5), cutter_serial = COALESCE(cutter_serial, $6), \
+                   temperature_c = COALESCE(temperature_c, $7) WHERE id = $8";
+        let values =
+            values![serial, shop.machine, shop.holder, shop.cutter, shop.material, very_cutter, temperature_c, id];
+        on.change(say, &values)?;
     }
     let by = [("part", id.into()), ("hash", part.hash().into())];
     let more = [("sigma_nm", part.sigma_nm.into()), ("readings", (part.readings.len() as i64).into())];

@@ -55,6 +55,8 @@ pub struct LastPart {
     pub serial: Option<String>,
     /// Its machine.
     pub machine: Option<String>,
+    /// How warm it was when it was measured, °C.
+    pub temperature_c: Option<f64>,
     /// Its readings.
     pub readings: i64,
     /// When it was stored, UTC.
@@ -69,7 +71,8 @@ pub(crate) fn status(on: &mut dyn Backend, place: &Place, last: u32) -> Result<S
     };
     let last_parts = "SELECT j.program_crc32, j.feature, p.number, p.serial, m.name, p.stored, \
                       (SELECT s.readings FROM measurement s WHERE s.part = p.id ORDER BY s.id DESC LIMIT 1), \
-                      (SELECT max(h.history) FROM history_part h JOIN measurement s ON s.id = h.measurement WHERE s.part = p.id) \
+                      (SELECT max(h.history) FROM history_part h JOIN measurement s ON s.id = h.measurement WHERE s.part = p.id), \
+                      p.temperature_c \
                       FROM part p JOIN job j ON j.id = p.job LEFT JOIN machine m ON m.id = p.machine \
                       ORDER BY p.id DESC LIMIT $1";
     let parts = on.rows(last_parts, &values![i64::from(last)])?;
@@ -83,6 +86,7 @@ pub(crate) fn status(on: &mut dyn Backend, place: &Place, last: u32) -> Result<S
             stored: utc(row.integer(5)?),
             readings: row.some_integer(6)?.unwrap_or(0),
             history: row.some_integer(7)?,
+            temperature_c: row.some_real(8)?,
         })
     };
     Ok(Status {

@@ -81,6 +81,13 @@ impl Row {
             other => Err(unexpected(column, other)),
         }
     }
+    /// A number, if there is one.
+    pub(crate) fn some_real(&self, column: usize) -> Result<Option<f64>, Failure> {
+        match self.0.get(column) {
+            Some(Value::Null) => Ok(None),
+            _ => self.real(column).map(Some),
+        }
+    }
     /// A text, if there is one.
     pub(crate) fn some_text(&self, column: usize) -> Result<Option<&str>, Failure> {
         match self.0.get(column) {

@@ -113,13 +113,14 @@ fn without_its_store_a_command_does_its_work_and_says_how_the_part_comes_in_late
 fn a_job_names_its_store_and_never_a_password() {
     let desk = desk();
     let job = desk.read("job.toml");
-    let own = "[store]\npath = \"shop.db\"\nmachine = \"VF2\"\nmaterial = \"42CrMo4\"\n[part]\nserial = \"17\"\nmaterial_batch = \"L7\"\n";
+    let own = "[store]\npath = \"shop.db\"\nmachine = \"VF2\"\nmaterial = \"42CrMo4\"\n[part]\nserial = \"17\"\nmaterial_batch = \"L7\"\ntemperature_c = 21.5\n";
     desk.write("job.toml", format!("{job}\n{own}"));
     desk.call("store init --store shop.db");
     desk.call("correct job.toml --probe part-1.txt -o out");
     let status = desk.call("store status --store shop.db");
     let last = &status["last_parts"][0];
     assert_eq!((&last["serial"], &last["machine"], &status["materials"]), (&"17".into(), &"VF2".into(), &1.into()));
+    assert_eq!(last["temperature_c"], 21.5);
     desk.call("store export job.toml -o copy");
     assert!(same(&desk, "copy/history.json", "out/history.json"));
 

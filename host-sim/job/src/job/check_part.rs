@@ -46,6 +46,8 @@ pub struct PartTable {
     pub reach: Option<Offset>,
     /// How far up and down a point speaks for the wall, 0.01…1000 mm; otherwise a quarter of the depth of cut.
     pub reach_height: Option<Offset>,
+    /// How warm it was when it was measured, −40…100 °C.
+    pub temperature: Option<Decimal>,
 }
 
 /// Limits of the wall error, both allowed.
@@ -165,6 +167,7 @@ pub(super) fn part(source: &Source, section: Option<&Section<'_>>) -> Result<Par
         uncertainty: length("uncertainty_mm", Limits::within("0.00001", "1", "mm"))?,
         reach: length("reach_mm", Limits::within("0.1", "1000", "mm"))?,
         reach_height: length("reach_height_mm", Limits::within("0.01", "1000", "mm"))?,
+        temperature: section.number("temperature_c", Limits::within("-40", "100", "degrees Celsius"))?,
     };
     section.close()?;
     Ok(table)

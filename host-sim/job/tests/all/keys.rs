@@ -202,6 +202,7 @@ const MEANINGS: &[(&str, &str, &str)] = &[
     ("part.uncertainty_mm", "none", "expanded uncertainty (k = 2) of a deviation"),
     ("part.reach_mm", "the cutter's diameter", "how far along the contour a point speaks for the wall"),
     ("part.reach_height_mm", "a quarter of the depth", "how far up and down it does"),
+    ("part.temperature_c", "none", "how warm it was when it was measured, for the store: nothing is computed from it"),
     ("store", "", "the shop store that its parts go into: [store](store.md)"),
     ("store.path", "`TRUEPATH_STORE`, else none", "a file, relative to this one"),
     (

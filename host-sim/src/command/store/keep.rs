@@ -5,6 +5,7 @@
 
 use std::path::Path as FilePath;
 
+use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::Failure;
 use truepath_job::job::{JobFile, StoreNames};
 use truepath_store::{Added, PartFolder, Place, Setup, Store};
@@ -60,5 +61,6 @@ pub(super) fn setup(job: Option<&JobFile>, by: &'static str) -> Setup {
         ..names
     };
     let stickout_nm = job.numbers.tool.cantilever.map_or(0, |cutter| cutter.length.nm());
-    Setup { names, stickout_nm, by }
+    let temperature_c = job.part.temperature.map(Decimal::as_f64);
+    Setup { names, stickout_nm, temperature_c, by }
 }

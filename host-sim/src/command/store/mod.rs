@@ -120,7 +120,7 @@ fn import(
     (terminal, progress): (&Terminal, &mut dyn FnMut(f64)),
 ) -> Result<Imported, Failure> {
     let folders = PartFolder::every(folders)?;
-    let setup = Setup { names: names.clone(), stickout_nm: 0, by: "store import" };
+    let setup = Setup { names: names.clone(), by: "store import", ..Setup::default() };
     let mut store = Store::open(place)?;
     let mut all: Vec<Added> = Vec::new();
     let mut wrong = Vec::new();

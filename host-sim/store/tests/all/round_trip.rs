@@ -98,6 +98,7 @@ fn names_come_later_and_never_change() {
     add(&mut store, &folder, &named);
     let last = &shown(store.status(1)).last_parts[0];
     assert_eq!((last.machine.as_deref(), last.serial.as_deref(), last.part), (Some("VF2"), Some("17"), 2));
+    assert_eq!(last.temperature_c, Some(21.5));
 }
 
 #[test]

@@ -114,5 +114,5 @@ pub fn setup() -> Setup {
         lot: text("L7"),
         serial: None,
     };
-    Setup { names, stickout_nm: 60_000_000, by: "import" }
+    Setup { names, stickout_nm: 60_000_000, temperature_c: Some(21.5), by: "import" }
 }
