@@ -156,6 +156,18 @@ pub fn as_its_points_tell(pass: Pass, measurement: &Measurement) -> Result<Pass,
     Ok(passes.into_iter().next().unwrap_or(pass))
 }
 
+/// The passes of walls of an uncorrected part, which begin at what the shop believes only where the points of all agree with it.
+///
+/// # Errors
+/// What is wrong with program or measurement.
+pub fn as_they_agree(walls: Vec<(Pass, Measurement)>) -> Result<Vec<(Pass, Measurement)>, Failure> {
+    let passes: Vec<&Pass> = walls.iter().map(|(pass, _)| pass).collect();
+    let agreed = told::agreed(&passes, &|k| {
+        walls.get(k).map_or_else(|| Ok(Vec::new()), |(_, measurement)| measurement.observations())
+    })?;
+    Ok(agreed.into_iter().zip(walls).map(|(pass, (_, measurement))| (pass, measurement)).collect())
+}
+
 /// Machine and material of an uncorrected part, and what is beside them: along the contour, and at any place, where the job wants it.
 ///
 /// # Errors

@@ -15,6 +15,7 @@ use crate::correction::{DesignRequest, Identification, design_correction};
 use crate::feeds;
 use crate::learn::refuse_feeds;
 use crate::learning::{History, Part, PartPoints, joint, refuse_uncorrected};
+use crate::told::{self, Told};
 use crate::verification::{Measured, Plan, Settings, WallSensitivity, plan_next};
 
 /// Plans further touches of an uncorrected part that was measured, in memory. `progress` is told the share done, 0…1.
@@ -79,6 +80,7 @@ pub fn next_part(
         history.refuse_known(&part)?;
         parts.push(part);
     }
+    let pass = &as_parts_tell(pass, &parts)?;
     let mut buffer = PathBuffer::default();
     let sampled = pass.sample(&mut buffer)?;
     let points: Option<Vec<PartPoints>> = parts.iter().map(|part| PartPoints::of(part, &sampled)).collect();
@@ -108,6 +110,15 @@ pub fn next_part(
     };
     let plan = plan_next(pass, settings, &measured, &mut |share| progress(0.7 + 0.3 * share))?;
     Ok(Plan { correction: history.correction(), ..plan })
+}
+
+/// The pass as the points of its parts have it, which is how `learn` will see it.
+fn as_parts_tell(pass: &Pass, parts: &[Part]) -> Result<Pass, Failure> {
+    let heard = told::passes(&[pass], false, &|_, path| {
+        let points = |part| PartPoints::of(part, path).ok_or_else(|| other_contour(path).into());
+        parts.iter().map(|part| points(part).map(Told::from)).collect()
+    })?;
+    Ok(heard.passes.into_iter().next().unwrap_or_else(|| pass.clone()))
 }
 
 fn goal(

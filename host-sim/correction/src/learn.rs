@@ -185,7 +185,7 @@ fn as_told(walls: &[CorrectedWall<'_>], newest: &[Part]) -> Result<Vec<Pass>, Fa
             return Err(Failure::Internal("points of no wall".to_owned()));
         };
         let parts = part_points(wall.history, part, path)?;
-        Ok(parts.into_iter().map(|part| Told { nodes: part.nodes, observations: part.observations }).collect())
+        Ok(parts.into_iter().map(Told::from).collect())
     })
     .map(|heard| heard.passes)
 }

@@ -18,7 +18,7 @@ use crate::damped::{DampedSummary, damped_summary};
 use crate::floor::Floor;
 use crate::guard::{GuardSummary, guard_summary};
 use crate::sharp_corners::SharpCorners;
-use crate::shop::Said;
+use crate::shop::{Belief, Said};
 use crate::surface::expected::Surfaces;
 
 /// An identified quantity.
@@ -98,6 +98,9 @@ pub struct CorrectSummary {
     /// What the points say of what jobs have in common, whatever was believed before: for the shop store. Not under the mean law.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub points_say: Option<Said>,
+    /// What was believed beforehand in place of what the job states, to begin there again; absent where nothing was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub believed: Option<Belief>,
     /// Contacts used.
     pub points_used: usize,
     /// Contacts the fit set aside.
@@ -272,6 +275,7 @@ pub fn correct_summary(
         milling: milling_name(pass.core.setup.milling),
         identified: parameters(identified),
         points_say: Said::of(&identified.core, &pass.core.stated_prior(WallLaw::Helical)),
+        believed: pass.core.believed.as_ref().map(Belief::from),
         points_used: observations.len(),
         points_outlying: identified.outlying(),
         points_rejected: rejected,

@@ -9,6 +9,7 @@ use truepath_job::pass::{Pass, PathBuffer};
 
 use crate::discrepancy::PartCut;
 use crate::identification::Found;
+use crate::learning::PartPoints;
 use crate::shop::{Agreement, after, agreement};
 use crate::{roughing, runout};
 
@@ -23,6 +24,12 @@ pub struct Told {
     pub nodes: Vec<Node>,
     /// Its points.
     pub observations: Vec<Observation>,
+}
+
+impl From<PartPoints> for Told {
+    fn from(part: PartPoints) -> Self {
+        Self { nodes: part.nodes, observations: part.observations }
+    }
 }
 
 /// The passes of walls, and what is known of their machine already.
@@ -59,6 +66,23 @@ pub fn passes(walls: &[&Pass], together: bool, points: &Points<'_>) -> Result<He
     }
     let (passes, fits) = with_cuts(&passes, together, points, &|walls, groups| Ok(runout::passes(walls, groups)))?;
     Ok(Heard { passes, fits })
+}
+
+/// The passes of walls of one uncorrected part, told by their numbers, which begin at what the shop believes only where the points of all
+/// agree with it.
+///
+/// # Errors
+/// What `points` answers, and what is wrong with a program.
+pub fn agreed(
+    walls: &[&Pass],
+    points: &dyn Fn(usize) -> Result<Vec<Observation>, Failure>,
+) -> Result<Vec<Pass>, Failure> {
+    let passes: Vec<Pass> = walls.iter().map(|pass| (*pass).clone()).collect();
+    if passes.iter().all(|pass| pass.core.believed.is_none()) {
+        return Ok(passes);
+    }
+    let told = |k: usize, _: &Path| Ok(vec![Told { nodes: Vec::new(), observations: points(k)? }]);
+    with_cuts(&passes, true, &told, &|walls, groups| Ok(as_they_agree(walls, groups)))
 }
 
 /// Passes that begin at what the shop believes only where the points of their group agree with it.

@@ -4,6 +4,7 @@
 //! and prints. Those that need ports, processes, folders of the system or threads are left out in a browser.
 
 pub mod batch;
+mod begin;
 pub mod bore;
 pub mod canon;
 pub mod compare;

@@ -5,6 +5,7 @@ use std::path::{Path as FilePath, PathBuf};
 use clap::{Args, ValueEnum};
 use truepath_core::checksum::crc32;
 use truepath_core::units::Offset;
+use truepath_correction::correct::as_they_agree;
 use truepath_correction::plan::choice::{Choice, Plan, Planner, Wanted};
 use truepath_correction::plan::history::{NextPart, PlanHistory, Process};
 use truepath_correction::plan::written::{Chosen, WrittenPlan, write};
@@ -26,6 +27,7 @@ use truepath_job::pass::Pass;
 use truepath_job::signing::SignFlags;
 use truepath_report::{PlannedWall, planned_map_csv, planned_page};
 
+use super::begin::BeginFlags;
 use super::correction_files::{contour_name, contour_place};
 use super::plan_files::{FILES, MAP, PLAN_HISTORY, PROBED, PROGRAM, REPORT, VERIFY};
 use super::probe::log_name;
@@ -66,6 +68,9 @@ pub struct Options {
     /// Who signs an image.
     #[command(flatten)]
     pub sign: SignFlags,
+    /// Where the fit begins.
+    #[command(flatten)]
+    pub begin: BeginFlags,
     /// What is said of the probe file in place of the job.
     #[command(flatten)]
     pub probe_flags: ProbeFlags,
@@ -298,7 +303,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
     job.which = options.which.clone();
     let wanted = wanted(options, &job)?;
     let file = Source::read(&options.probe)?;
-    let walls = Pass::every(job)?;
+    let walls = options.begin.passes(Pass::every(job)?);
     let measured = walls.first().and_then(|pass| Some((pass, pass.job.measured_stock()?)));
     if let Some((pass, key)) = measured {
         let found = format!("{key} is given: the allowance is not even");
@@ -318,6 +323,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
     }
     let to_write = options.write.as_deref().map(|text| ToWrite::parse(text, measured.len())).transpose()?;
     let folder = options.output.as_ref().map(|out| OutputFolder::create(out, options.force, FILES)).transpose()?;
+    let measured = as_they_agree(measured)?;
     let walls: Vec<(&Pass, &Measurement)> = measured.iter().map(|(pass, points)| (pass, points)).collect();
     let planners = Planner::every(&walls, |share| progress(0.1 * share))?;
     let (mut plans, mut said) = (Vec::new(), Vec::new());

@@ -171,7 +171,29 @@ fn what_a_machine_has_shown_on_one_job_is_worth_something_on_the_next() {
     };
     let ((open_to_shop, said), (_, away)) = (open(""), open(" --store missing.db"));
     assert!(said.contains(began) && away.contains("the store does not answer"), "{said} {away}");
+    // So it is after those touches, on the part that the correction cuts, and with passes that are planned.
+    let next = |more: &str| {
+        let plan = desk.call(&format!("probe job.toml --next {more}"));
+        (plan["wall_sigma_before_mm"].as_f64().expect("a number"), plan["warnings"].to_string())
+    };
+    let further = ["--probe few.txt", "--from shop"].map(next);
+    let planned = desk.call("plan job.toml --probe few.txt --tolerance 0.05");
+    for said in further.iter().map(|(_, said)| said).chain([&planned["warnings"].to_string()]) {
+        assert!(said.contains(began), "{said}");
+    }
+    // A pack holds where the fit began: the store is not asked when the correction is made again.
+    fs::create_dir(desk.path().join("kept")).expect("a folder");
+    for file in ["job.toml", "program.nc", "few.txt", "shop"] {
+        fs::rename(desk.path().join(file), desk.path().join("kept").join(file)).expect("moved");
+    }
+    let pack = desk.call("pack kept -o part.tpk");
+    assert_eq!(pack["again"]["same"], true, "{}", pack["again"]);
+    for file in ["job.toml", "program.nc", "few.txt", "shop"] {
+        fs::rename(desk.path().join("kept").join(file), desk.path().join(file)).expect("moved");
+    }
     desk.write("job.toml", own(""));
+    let (further_alone, _) = next("--probe few.txt");
+    assert!(further[0].0 < 0.9 * further_alone, "{} {further_alone}", further[0].0);
     let (open_alone, said) = open("");
     assert!(open_to_shop < 0.5 * open_alone && !said.contains("store"), "{open_to_shop} {open_alone} {said}");
     let alone = desk.call("correct job.toml --probe few.txt -o alone");

@@ -27,6 +27,7 @@ use crate::correction::Identification;
 use crate::identification::{Found, Points, asked, found};
 use crate::learn::refuse_feeds;
 use crate::learning::Part;
+use crate::told;
 
 /// A contour of a part that a planned program has cut.
 #[derive(Clone, Copy, Debug)]
@@ -275,7 +276,11 @@ fn uncorrected(cuts: &[PlannedCut<'_>]) -> Result<Found, Failure> {
         placed.push(CutPoints { path: cut.pass.sample(buffer)?, points: own.len(), part: 0 });
         points.extend(own);
     }
-    let first = &cuts.first().ok_or_else(|| Failure::Internal("no contour to learn from".to_owned()))?.pass.core;
+    let passes: Vec<&Pass> = cuts.iter().map(|cut| cut.pass).collect();
+    let agreed = told::agreed(&passes, &|k| {
+        Ok(cuts[k].history.parts.first().map(|part| observations(&part.measured)).unwrap_or_default())
+    })?;
+    let first = &agreed.first().ok_or_else(|| Failure::Internal("no contour to learn from".to_owned()))?.core;
     let points = Points { cuts: &placed, earlier: &[], observations: &points };
     Ok(found(first, asked(first.job.force.model), points, |_, _| Vector::ZERO, &mut |_| ()))
 }

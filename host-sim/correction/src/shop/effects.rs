@@ -6,7 +6,7 @@ use truepath_core::identify::Prior;
 use truepath_ground::cholesky::Cholesky;
 use truepath_ground::units::float;
 
-use super::quantities::{QUANTITIES, Quantities, Quantity, narrowed, of, sigmas};
+use super::quantities::{CUTTERS_MM, QUANTITIES, Quantities, Quantity, narrowed, of, sigmas};
 use super::said::{Said, Square};
 
 /// Where a job is cut and from what; empty where it is not known.
@@ -52,8 +52,6 @@ const MACHINE_OF_YIELD: f64 = 0.7;
 /// What scatters from job to job on one machine in one material, one standard deviation: wear, lots, clamping, and what the model lacks.
 /// A cutter wears, and runs out otherwise each time it is clamped.
 const SCATTER: Quantities = [0.10, 0.03, 0.02, 0.08, 0.20, 0.12, 0.03, 0.03, 0.004];
-/// What cutters that nobody measured are smaller by than stated, one standard deviation, mm: those that were are known as stated.
-const CUTTERS_MM: f64 = 0.010;
 /// What of this is a very cutter by itself, one standard deviation: how far it is worn, its edges above all.
 const OF_CUTTER: Quantities = [0.05, 0.0, 0.0, 0.0, 0.12, 0.0, 0.0, 0.0, 0.0];
 /// What of it is a lot of the material by itself, one standard deviation: another one cuts some per cent harder.
@@ -184,7 +182,8 @@ impl<'s> Unknowns<'s> {
 
 impl Shop {
     /// What to expect of a job in a setting that states `stated` under the helical law; `None` where nothing of it is known better than
-    /// from the statement alone, and where it would be farther from the statement than any machine is.
+    /// from the statement alone, and where it would be farther from the statement than any machine is. A cutter that would be of quite
+    /// another size than stated is expected as stated, and the rest as the shop knows it.
     ///
     /// The last value is the number of jobs that say so.
     pub fn believed(&self, setting: &Setting, stated: &Prior) -> Option<(Prior, usize)> {
@@ -226,7 +225,11 @@ impl Shop {
             own.iter().filter(|(_, quantity)| *quantity == k).for_each(|(i, _)| of_it[*i] = 1.0);
             let mean: f64 = centre[k] + of_it.iter().zip(&effects).map(|(one, effect)| one * effect).sum::<f64>();
             let variance: f64 = factor.halfway(&of_it).iter().map(|v| v * v).sum::<f64>() + scatter[k];
-            if (mean - at[k]).abs() > FARTHEST * sigma[k] {
+            if (mean - at[k]).abs() > Quantity::ALL[k].farthest(sigma[k]) {
+                // A cutter of another size says nothing of the machine that it is in.
+                if Quantity::ALL[k] == Quantity::Undersize {
+                    continue;
+                }
                 return None;
             }
             let sure = variance.sqrt();
@@ -252,9 +255,6 @@ impl Shop {
 const NARROWER: f64 = 0.95;
 /// Or where it is so many standard deviations away from what the job states.
 const ELSEWHERE: f64 = 2.0;
-/// Farther from what a job states than this many of its standard deviations is nothing to begin at.
-const FARTHEST: f64 = 6.0;
-
 impl Member {
     /// What a job says of the effects, about a centre: its information with its own scatter beside it, and the pull.
     fn scattered(&self, centre: &Quantities) -> (Square, Quantities) {
@@ -502,6 +502,26 @@ mod tests {
         let sigma = sigmas(&prior)[Quantity::Yield as usize];
         assert!(says(3.0 * sigma).is_some());
         assert_eq!(says(9.0 * sigma), None);
+    }
+
+    #[test]
+    fn a_cutter_of_quite_another_size_leaves_what_is_known_of_its_machine() {
+        let prior = stated(3000, 1000);
+        let in_it = Setting { cutter: "1".to_owned(), ..setting("A", "X") };
+        let expected_mm = |small: f64| {
+            let says = [(Quantity::Yield, 0.4, 0.02), (Quantity::Undersize, small, 0.001)];
+            let jobs = (0..6).map(|_| Member { setting: in_it.clone(), ..member("A", "X", &prior, &says) });
+            let shop = Shop { members: jobs.collect() };
+            [Quantity::Yield, Quantity::Undersize].map(|quantity| expected(&shop, &in_it, &prior, quantity)[0])
+        };
+        let level = of(&prior.mean)[Quantity::Yield as usize];
+        // Six times what nobody measured is 60 µm; a cutter ground by a tenth is none of those.
+        for (small, believed) in [(0.04, true), (0.1, false)] {
+            let [yields, size] = expected_mm(small);
+            assert!((yields - level - 0.4).abs() < 0.06, "{yields} of a cutter {small} smaller");
+            assert_eq!((size - small).abs() < 0.006, believed, "{size} of a cutter {small} smaller");
+            assert!(believed || size == 0.0, "{size}");
+        }
     }
 
     #[test]

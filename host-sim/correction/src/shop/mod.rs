@@ -10,12 +10,14 @@
 //! the part is fitted without it and says so ([`Agreement`]).
 
 mod agreement;
+mod belief;
 mod effects;
 mod quantities;
 mod said;
 
 pub use agreement::{Agreement, CONTRADICTED};
 pub(crate) use agreement::{after, agreement};
+pub use belief::Belief;
 pub use effects::{Member, Setting, Shop};
 pub use quantities::{QUANTITIES, Quantities, Quantity};
 pub use said::Said;

@@ -98,7 +98,17 @@ impl Quantity {
             _ => 1.0,
         }
     }
+
+    /// Farther from what a job states, to one standard deviation, is nothing to begin at.
+    pub(super) fn farthest(self, sigma: f64) -> f64 {
+        FARTHEST * if self == Self::Undersize { sigma.max(CUTTERS_MM) } else { sigma }
+    }
 }
+
+/// Standard deviations.
+const FARTHEST: f64 = 6.0;
+/// What cutters that nobody measured are smaller by than stated, one standard deviation, mm: those that were are known as stated.
+pub(super) const CUTTERS_MM: f64 = 0.010;
 
 /// One standard deviation of each under a prior; 0 where it is held.
 pub(super) fn sigmas(prior: &Prior) -> Quantities {
@@ -107,43 +117,71 @@ pub(super) fn sigmas(prior: &Prior) -> Quantities {
 
 /// A prior with other expected values and standard deviations of some quantities, `None` for those that stay.
 pub(super) fn narrowed(stated: &Prior, by: &[Option<[f64; 2]>; QUANTITIES]) -> Prior {
-    let mut prior = *stated;
     let mut values = of(&stated.mean);
+    let mut sigma = stated.sigma;
     for quantity in Quantity::ALL {
         let k = quantity as usize;
         if let Some([mean, deviation]) = by[k] {
-            (values[k], prior.sigma[k]) = (mean, real(deviation / quantity.widening()));
+            (values[k], sigma[k]) = (mean, real(deviation / quantity.widening()));
         }
     }
     let [level, difference, cross, radial, edge, edge_ratio, bend, exponent, undersize] = values;
-    let mean = &mut prior.mean;
-    let (ktc, kte) = (float(mean.coefficients.ktc), float(mean.coefficients.kte));
+    let mut raw = Raw::of(&stated.mean);
+    let ktc = float(stated.mean.coefficients.ktc);
     let new = |quantity: Quantity| by[quantity as usize].is_some();
     if new(Quantity::Yield) || new(Quantity::Difference) || new(Quantity::Cross) || new(Quantity::Bend) {
         let compliance = libm::exp(level) / ktc;
         let part = |share: f64| real(share * compliance);
-        mean.compliance =
+        raw.compliance =
             Compliance { mean: part(1.0), difference: part(difference), cross: part(cross), bend: real(bend) };
     }
     if new(Quantity::RadialRatio) {
-        mean.coefficients.krc = real(libm::exp(radial) * ktc);
+        raw.krc = real(libm::exp(radial) * ktc);
     }
-    if new(Quantity::EdgeLevel) && kte > 0.0 {
-        let stated = mean.coefficients.kte;
-        mean.coefficients.kte = real(libm::exp(edge) * ktc);
-        mean.edge_level = mean.edge_level * (mean.coefficients.kte / stated);
+    if new(Quantity::EdgeLevel) && raw.kte > Real::ZERO {
+        raw.kte = real(libm::exp(edge) * ktc);
     }
     if new(Quantity::EdgeRatio) {
-        mean.edge_ratio = real(libm::exp(edge_ratio));
-    }
-    if mean.coefficients.kre != Real::ZERO && kte > 0.0 {
-        mean.coefficients.kre = mean.coefficients.kte * mean.edge_ratio;
+        raw.edge_ratio = real(libm::exp(edge_ratio));
     }
     if new(Quantity::SizeExponent) {
-        mean.coefficients.size_exponent = real(exponent.max(0.0));
+        raw.size_exponent = real(exponent.max(0.0));
     }
     if new(Quantity::Undersize) {
-        mean.undersize = Offset::from_mm(real(undersize));
+        raw.undersize = Offset::from_mm(real(undersize));
     }
-    prior
+    Prior { mean: raw.put_in(&stated.mean), sigma }
+}
+
+/// What of the parameters of a prior another belief changes, in their own units.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Raw {
+    pub(super) compliance: Compliance,
+    pub(super) krc: Real,
+    pub(super) kte: Real,
+    pub(super) edge_ratio: Real,
+    pub(super) size_exponent: Real,
+    pub(super) undersize: Offset,
+}
+
+impl Raw {
+    pub(super) const fn of(mean: &Parameters) -> Self {
+        let Parameters { coefficients: k, compliance, edge_ratio, undersize, .. } = *mean;
+        Self { compliance, krc: k.krc, kte: k.kte, edge_ratio, size_exponent: k.size_exponent, undersize }
+    }
+
+    /// The parameters with these; the other edge coefficient follows.
+    pub(super) fn put_in(&self, stated: &Parameters) -> Parameters {
+        let mut mean = *stated;
+        let Self { compliance, krc, kte, edge_ratio, size_exponent, undersize } = *self;
+        (mean.compliance, mean.edge_ratio, mean.undersize) = (compliance, edge_ratio, undersize);
+        (mean.coefficients.krc, mean.coefficients.kte, mean.coefficients.size_exponent) = (krc, kte, size_exponent);
+        if stated.coefficients.kte > Real::ZERO {
+            mean.edge_level = stated.edge_level * (kte / stated.coefficients.kte);
+            if stated.coefficients.kre != Real::ZERO {
+                mean.coefficients.kre = kte * edge_ratio;
+            }
+        }
+        mean
+    }
 }

@@ -11,8 +11,6 @@ use truepath_job::pass::Pass;
 
 use super::super::correction_files::contour_name;
 use super::super::readings::Readings;
-#[cfg(not(target_family = "wasm"))]
-use super::super::store::believe::believing;
 use super::Options;
 
 /// A point on the wall beside what the identified machine would have left there.
@@ -57,9 +55,7 @@ pub struct Identified {
 pub fn identify(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Identified, Failure> {
     let job = options.said.read(&options.job)?;
     let readings = Readings::read(options.probe.as_deref(), options.dimensions.as_deref())?;
-    let walls = Pass::every(job)?;
-    #[cfg(not(target_family = "wasm"))]
-    let walls = believing(walls, options.store.as_deref());
+    let walls = options.begin.passes(Pass::every(job)?);
     let several = walls.len() > 1;
     let mut measured = match <[Pass; 1]>::try_from(walls) {
         Ok([only]) => vec![readings.of_one(only)?],

@@ -23,13 +23,14 @@ use truepath_report::page::render;
 use truepath_report::pages;
 use truepath_report::pages::{Points, REPORT};
 
+use super::begin::BeginFlags;
 pub use super::correction_files::FILES;
 use super::correction_files::{HISTORY, commit, write_contour, write_program};
 use super::history::refuse_replacing;
 use super::pocket;
 use super::readings::{Readings, apart};
 #[cfg(not(target_family = "wasm"))]
-use super::store::{believe::believing, keep::keep};
+use super::store::keep::keep;
 use crate::terminal::Terminal;
 pub use identify::{Identified, Point, identify};
 use truepath_report::next::after_correction;
@@ -62,11 +63,9 @@ pub struct Options {
     /// holds it.
     #[arg(long, value_name = "MM", allow_negative_numbers = true, conflicts_with = "no_probe")]
     pub tolerance: Option<String>,
-    /// The shop store that the part goes into, and that says what other jobs know where the job wants it: a file, or postgres://user@host/database; otherwise TRUEPATH_STORE, then the one that
-    /// the job names.
-    #[cfg(not(target_family = "wasm"))]
-    #[arg(long, value_name = "PATH|URL")]
-    pub store: Option<String>,
+    /// Where the fit begins.
+    #[command(flatten)]
+    pub begin: BeginFlags,
     /// Replace the files of an earlier run.
     #[arg(long)]
     pub force: bool,
@@ -88,7 +87,7 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
     let summary = terminal.watch("correcting", |progress| run(options, progress))?;
     terminal.warn_all(&summary.warnings);
     #[cfg(not(target_family = "wasm"))]
-    keep((job, options.store.as_deref()), output, "correct", terminal);
+    keep((job, options.begin.store.as_deref()), output, "correct", terminal);
     terminal.tell(&summary, || words(&summary, output) + &after_correction(&summary, job, Some(output)).to_string())
 }
 
@@ -174,18 +173,13 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
     let first = options.first_pass.as_deref().map(|first| Pass::read(options.said.read(first)?)).transpose()?;
     let pass = match first {
         Some(_) => Pass::read(job)?,
-        None => {
-            let walls = Pass::every(job)?;
-            #[cfg(not(target_family = "wasm"))]
-            let walls = believing(walls, options.store.as_deref());
-            match <[Pass; 1]>::try_from(walls) {
-                Ok([only]) => only,
-                Err(walls) => {
-                    let to = (options.output.as_path(), options.force, options.route);
-                    return several::run(walls, &readings, to, progress);
-                }
+        None => match <[Pass; 1]>::try_from(options.begin.passes(Pass::every(job)?)) {
+            Ok([only]) => only,
+            Err(walls) => {
+                let to = (options.output.as_path(), options.force, options.route);
+                return several::run(walls, &readings, to, progress);
             }
-        }
+        },
     };
     let (pass, first, measurement) = match first {
         None => {

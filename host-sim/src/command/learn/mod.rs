@@ -23,13 +23,14 @@ use truepath_report::correction_csv;
 use truepath_report::page::render;
 use truepath_report::pages::learned;
 
+use super::begin::BeginFlags;
 use super::correct::words as correction;
 use super::correction_files::{FILES, HISTORY, MILLED, commit, write_contour, write_program};
 use super::history::{history_in, holds_planned};
 use super::plan_files::PLAN_HISTORY;
 use super::readings::Readings;
 #[cfg(not(target_family = "wasm"))]
-use super::store::{believe::believing, keep::keep};
+use super::store::keep::keep;
 use crate::terminal::Terminal;
 use truepath_report::next::after_correction;
 
@@ -65,11 +66,9 @@ pub struct Options {
     /// Of a part cut with planned passes: search for passes anew, instead of designing the same ones anew.
     #[arg(long)]
     pub replan: bool,
-    /// The shop store that the part goes into, and that says what other jobs know where the job wants it: a file, or postgres://user@host/database; otherwise TRUEPATH_STORE, then the one that
-    /// the job names.
-    #[cfg(not(target_family = "wasm"))]
-    #[arg(long, value_name = "PATH|URL")]
-    pub store: Option<String>,
+    /// Where the fit begins.
+    #[command(flatten)]
+    pub begin: BeginFlags,
     /// Replace the files of an earlier run.
     #[arg(long)]
     pub force: bool,
@@ -101,9 +100,9 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
             let help = "touch it with a probe: planned passes are learned from points at several heights";
             return Err(InputError::new(C001, found, "--probe", help).into());
         };
-        planned::main(job, (probe, &options.from), to, wish, terminal)?;
+        planned::main((job, &options.begin), (probe, &options.from), to, wish, terminal)?;
         #[cfg(not(target_family = "wasm"))]
-        keep((&options.job, options.store.as_deref()), &options.output, "learn", terminal);
+        keep((&options.job, options.begin.store.as_deref()), &options.output, "learn", terminal);
         return Ok(());
     }
     if options.replan {
@@ -115,7 +114,7 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
     terminal.warn_all(&summary.correct.warnings);
     let (job, output) = (&options.job, &options.output);
     #[cfg(not(target_family = "wasm"))]
-    keep((job, options.store.as_deref()), output, "learn", terminal);
+    keep((job, options.begin.store.as_deref()), output, "learn", terminal);
     terminal.tell(&summary, || {
         words(&summary)
             + &correction(&summary.correct, output)
@@ -193,16 +192,13 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
         Ok([only]) => only,
         Err(walls) => {
             let to = (options.output.as_path(), options.force, options.route);
-            #[cfg(not(target_family = "wasm"))]
-            let walls = believing(walls, options.store.as_deref());
-            return several::run(walls, (&readings, &options.from, options.part), to, progress);
+            return several::run(options.begin.passes(walls), (&readings, &options.from, options.part), to, progress);
         }
     };
     let history = history_in(&options.from, &options.from)?.of_part(options.part)?;
     let level = history.facts.level().filter(|_| options.said.which.pass.is_none() && pass.plan.is_some());
     let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass).cut_with(history.cut_with());
-    #[cfg(not(target_family = "wasm"))]
-    let pass = believing(vec![pass], options.store.as_deref()).swap_remove(0);
+    let pass = options.begin.pass(pass);
     let measurement = readings.of_corrected(&pass)?;
     let folder = OutputFolder::create(&options.output, options.force, FILES)?;
     let remarks = measurement.remarks(&measurement.source);

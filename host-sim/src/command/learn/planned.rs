@@ -16,6 +16,7 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::{PlannedWall, planned_page};
 
+use super::super::begin::BeginFlags;
 use super::super::correction_files::{contour_name, contour_place};
 use super::super::history::{PlannedContours, planned_in};
 use super::super::plan::{Written, planned_name, program_name, write_files};
@@ -74,13 +75,13 @@ pub(super) struct Wish {
 
 /// Learns from the points in a file of the part that the planned program in a folder has cut, and prints what was learned.
 pub(super) fn main(
-    job: JobFile,
+    (job, begin): (JobFile, &BeginFlags),
     measured: (&FilePath, &FilePath),
     to: (&FilePath, bool),
     wish: Wish,
     terminal: &Terminal,
 ) -> Result<(), Failure> {
-    let summary = terminal.watch("learning", |progress| run(job, measured, to, wish, progress))?;
+    let summary = terminal.watch("learning", |progress| run((job, begin), measured, to, wish, progress))?;
     terminal.warn_all(&summary.warnings);
     terminal.tell(&summary, || words(&summary))
 }
@@ -163,7 +164,7 @@ fn refuse_other_route(said: Option<Route>, of_plan: Route) -> Result<(), InputEr
 
 /// Learns and writes the outputs.
 fn run(
-    job: JobFile,
+    (job, begin): (JobFile, &BeginFlags),
     (probe, from): (&FilePath, &FilePath),
     (output, force): (&FilePath, bool),
     wish: Wish,
@@ -172,6 +173,7 @@ fn run(
     let PlannedContours { cuts, several, left } = planned_in(from, job)?;
     let file = Source::read(probe)?;
     let (walls, mut histories): (Vec<Pass>, Vec<_>) = cuts.into_iter().unzip();
+    let walls = begin.passes(walls);
     for history in &mut histories {
         refuse_other_route(wish.route, history.next.route())?;
         history.next.tolerance_mm = wish.tolerance_mm.unwrap_or(history.next.tolerance_mm);

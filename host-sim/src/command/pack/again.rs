@@ -7,10 +7,12 @@ use std::path::Path as FilePath;
 
 use serde_json::Value;
 use truepath_correction::learn::LearnSummary;
+use truepath_correction::shop::Belief;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_job::job::{Route, Said, Which};
 use truepath_story::contents::{Command, Step, Story};
 
+use super::super::begin::{Begin, BeginFlags};
 use super::super::{correct, learn};
 use super::gathered::{SUMMARY, inside};
 
@@ -244,6 +246,7 @@ impl Place {
             let which = Which { feature: step.feature.clone(), pass: None };
             let said = Said { which, ..Said::default() };
             let file = |name: &Option<String>| name.as_ref().map(|name| then.join(name));
+            let begin = BeginFlags { begin: Begin::At(begun_at(story, step)), ..BeginFlags::default() };
             let (job, probe, dimensions) = (then.join(&step.job), file(&step.probe), file(&step.dimensions));
             match (step.command, &step.from) {
                 (Command::Learn, Some(from)) => {
@@ -258,6 +261,7 @@ impl Place {
                         from,
                         output,
                         route,
+                        begin,
                         said,
                         ..Default::default()
                     };
@@ -266,7 +270,7 @@ impl Place {
                 _ => {
                     let output = output.clone();
                     let options =
-                        correct::Options { job, probe, dimensions, output, route, said, ..Default::default() };
+                        correct::Options { job, probe, dimensions, output, route, begin, said, ..Default::default() };
                     correct::run(&options, progress)?;
                 }
             }
@@ -286,8 +290,19 @@ impl Place {
 
 /// The number of the part that a correction was learned from, as its summary has it.
 fn part_of(story: &Story, step: &Step) -> Option<u32> {
+    of_summary(story, step, "part")?.as_u64()?.try_into().ok()
+}
+
+/// What the fit of a correction began at in place of what its job states: no store is asked again.
+fn begun_at(story: &Story, step: &Step) -> Option<Belief> {
+    serde_json::from_value(of_summary(story, step, "believed")?).ok()
+}
+
+/// A value of the summary of a correction; of several contours that of the first that has it.
+fn of_summary(story: &Story, step: &Step, name: &str) -> Option<Value> {
     let summary: Value = serde_json::from_slice(story.files.get(&inside(&step.output, SUMMARY))?).ok()?;
-    summary.get("part")?.as_u64()?.try_into().ok()
+    let contours = summary.get("contours").and_then(Value::as_array).into_iter().flatten();
+    std::iter::once(&summary).chain(contours).find_map(|of| of.get(name).cloned())
 }
 
 /// Takes a text out of bytes, wherever it stands.

@@ -224,7 +224,7 @@ fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, Failu
     };
     let plan = if options.next {
         job.override_probe(&options.probe_flags)?;
-        next::of_files(job, (options.probe.as_deref(), options.from.as_deref()), &settings, progress)?
+        next::of_files((job, &options.begin), (options.probe.as_deref(), options.from.as_deref()), &settings, progress)?
     } else if options.stock {
         // It is what the touches are to find.
         job.stock_probe = None;

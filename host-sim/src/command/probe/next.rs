@@ -18,14 +18,15 @@ use truepath_job::job::JobFile;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
+use crate::command::begin::BeginFlags;
 use crate::command::history::{history_in, holds_planned, planned_in};
 
-/// Plans further touches from files. `progress` is told the share done, 0…1.
+/// Plans further touches from files; `begin` says where fits begin. `progress` is told the share done, 0…1.
 ///
 /// # Errors
 /// Neither file nor folder; whatever is wrong with them, a correction beyond the clamp, and as [`next`] and [`next_part`].
 pub(super) fn of_files(
-    job: JobFile,
+    (job, begin): (JobFile, &BeginFlags),
     (probe, from): (Option<&FilePath>, Option<&FilePath>),
     settings: &Settings,
     progress: &mut dyn FnMut(f64),
@@ -36,15 +37,15 @@ pub(super) fn of_files(
             let help = "give --probe, --from or both";
             return Err(InputError::new(C001, "--next without anything measured", "measured points", help).into());
         };
-        let (pass, measurement) = Measurement::of_any_depth(Pass::read(job)?, &file)?;
+        let (pass, measurement) = Measurement::of_any_depth(begin.pass(Pass::read(job)?), &file)?;
         let mut plan = next(&pass, &measurement, settings, progress)?;
         plan.warnings.extend(measurement.remarks(&file));
         return Ok(plan);
     };
     if holds_planned(folder) {
-        return planned_part(job, folder, settings, progress);
+        return planned_part((job, begin), folder, settings, progress);
     }
-    let pass = Pass::read(job)?;
+    let pass = begin.pass(Pass::read(job)?);
     let history = history_in(folder, folder)?;
     let level = history.facts.level().filter(|_| pass.job.which.pass.is_none() && pass.plan.is_some());
     let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass).cut_with(history.cut_with());
@@ -64,7 +65,7 @@ pub(super) fn of_files(
 /// Plans touches of the part cut with the planned program of a folder, of all its contours: at heights that tell the profile, since every
 /// height counts.
 fn planned_part(
-    job: JobFile,
+    (job, begin): (JobFile, &BeginFlags),
     folder: &FilePath,
     settings: &Settings,
     progress: &mut dyn FnMut(f64),
@@ -74,6 +75,6 @@ fn planned_part(
     let narrowest = cuts.iter().map(|(_, history)| history.next.tolerance_mm).reduce(f64::min);
     let settings = Settings { tolerance: settings.tolerance.or(narrowest), ..settings.clone() };
     let program = cuts.first().and_then(|(_, history)| history.program());
-    let passes: Vec<Pass> = cuts.into_iter().map(|(pass, _)| pass).collect();
+    let passes = begin.passes(cuts.into_iter().map(|(pass, _)| pass).collect());
     Ok(Plan { correction: program, ..plan_every(&passes, &settings, progress)? })
 }

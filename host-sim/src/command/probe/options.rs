@@ -9,8 +9,7 @@ use truepath_job::dimension::{INSTRUMENTS, Instrument};
 use truepath_job::job::{JobFile, ProbeFlags, Which, one_of};
 use truepath_job::pass::Pass;
 
-#[cfg(not(target_family = "wasm"))]
-use crate::command::store::believe::believing;
+use crate::command::begin::BeginFlags;
 
 /// What is asked for.
 #[derive(Clone, Debug, Args)]
@@ -29,6 +28,7 @@ pub struct Options {
     pub next: bool,
     /// Touch the stock, before the finishing pass: the results are for stock.probe of the job.
     #[arg(long, conflicts_with_all = ["next", "probe", "from"])]
+    #[cfg_attr(not(target_family = "wasm"), arg(conflicts_with = "store"))]
     pub stock: bool,
     /// Instead of a program: the dimensions that tell most with a calliper, as a sheet to print (FILE.html) and the file that its
     /// numbers are typed into (FILE.toml), for correct --dimensions.
@@ -52,11 +52,9 @@ pub struct Options {
     /// Folder of correct, plan or learn: touched is the part cut with the correction in it, its history is known.
     #[arg(long, value_name = "DIR", requires = "next", group = "measured")]
     pub from: Option<PathBuf>,
-    /// The shop store that says what other jobs know of machine, cutter and material where the job wants it, so that touches go where
-    /// these leave most open: a file, or postgres://user@host/database; otherwise TRUEPATH_STORE, then the one that the job names.
-    #[cfg(not(target_family = "wasm"))]
-    #[arg(long, value_name = "PATH|URL", conflicts_with_all = ["next", "stock"])]
-    pub store: Option<String>,
+    /// Where fits begin: touches go where that leaves most open.
+    #[command(flatten)]
+    pub begin: BeginFlags,
     /// Replace the file if it exists.
     #[arg(long)]
     pub force: bool,
@@ -78,9 +76,6 @@ pub struct Options {
 impl Options {
     /// The walls of the job, with what other jobs say of them where it wants that.
     pub(super) fn walls(&self, job: JobFile) -> Result<Vec<Pass>, Failure> {
-        let walls = Pass::every(job)?;
-        #[cfg(not(target_family = "wasm"))]
-        let walls = believing(walls, self.store.as_deref());
-        Ok(walls)
+        Ok(self.begin.passes(Pass::every(job)?))
     }
 }

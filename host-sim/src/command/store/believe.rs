@@ -10,8 +10,8 @@ use truepath_store::{Place, Setup, Store, setting};
 use super::chosen::place;
 use super::keep::setup;
 
-/// Passes of one job with what the store that is named says of machine and material. Without an answer of the store they stay as they
-/// are and say so: a part is not kept waiting for a server.
+/// Passes of one job with what the store that is named says of machine, cutter and material. Without an answer of the store they stay as
+/// they are and say so: a part is not kept waiting for a server.
 pub(in crate::command) fn believing(mut passes: Vec<Pass>, given: Option<&str>) -> Vec<Pass> {
     let Some(job) = passes.first().map(|pass| pass.job.clone()).filter(|job| job.store.prior == PriorOf::Shop) else {
         return passes;
