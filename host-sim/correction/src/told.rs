@@ -9,7 +9,6 @@ use truepath_job::pass::{Pass, PathBuffer};
 
 use crate::discrepancy::PartCut;
 use crate::identification::Found;
-use crate::learning::PartPoints;
 use crate::shop::{Agreement, after, agreement};
 use crate::{roughing, runout};
 
@@ -24,12 +23,6 @@ pub struct Told {
     pub nodes: Vec<Node>,
     /// Its points.
     pub observations: Vec<Observation>,
-}
-
-impl From<PartPoints> for Told {
-    fn from(part: PartPoints) -> Self {
-        Self { nodes: part.nodes, observations: part.observations }
-    }
 }
 
 /// The passes of walls, and what is known of their machine already.

@@ -17,6 +17,7 @@ use truepath_job::pass::Pass;
 use super::history::Part;
 use crate::discrepancy::{Along, Discrepancy, Own, PartCut, own, plain, relieved};
 use crate::identification::asked;
+use crate::told::Told;
 
 /// A part as the fit takes it.
 #[derive(Clone, Debug)]
@@ -29,6 +30,12 @@ pub struct PartPoints {
     pub nodes: Vec<Node>,
     /// Standard deviation of one reading.
     pub noise: Offset,
+}
+
+impl From<PartPoints> for Told {
+    fn from(part: PartPoints) -> Self {
+        Self { nodes: part.nodes, observations: part.observations }
+    }
 }
 
 /// What all parts together say.
