@@ -25,7 +25,7 @@ fn on_terminal(arguments: &[&str]) -> OnTerminal {
 
 /// Setpoints along the image on the served device, by way of its setpoint link.
 fn mill(served: &Served, image: &Path, count: u64) {
-    let kind = Kind::Ports { names: [served.setpoints.clone(), served.config.clone()], baud: 0 };
+    let kind = Kind::Ports { names: [served.setpoints.clone(), served.config.clone()], bauds: [0; 2] };
     let mut board = open(&kind, 8, false).unwrap();
     let options = Options { source: Source::Path, count, axes: 3, rate_hz: 1_000, faults: Faults::default(), seed: 1 };
     let report = run(&mut *board, &std::fs::read(image).unwrap(), &options, &mut |_| ()).unwrap();

@@ -170,7 +170,7 @@ fn a_device_behind_sockets_is_driven_frame_by_frame() {
     let folder = tempfile::tempdir().unwrap();
     serve(folder.path());
     let name = |file: &str| folder.path().join(file).display().to_string();
-    let kind = Kind::Ports { names: [name("setpoint.sock"), name("config.sock")], baud: 0 };
+    let kind = Kind::Ports { names: [name("setpoint.sock"), name("config.sock")], bauds: [0; 2] };
     let faults = truepath_bench::Faults {
         drop: probability(0.02),
         corrupt: probability(0.05),

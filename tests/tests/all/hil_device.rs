@@ -93,7 +93,7 @@ fn a_new_board_is_looked_at_loaded_configured_and_its_fault_recorded() {
 
     // A part with disturbances, until something went wrong.
     let name = |file: &str| folder.path().join(file).display().to_string();
-    let kind = Kind::Ports { names: [name("setpoint.sock"), name("config.sock")], baud: 0 };
+    let kind = Kind::Ports { names: [name("setpoint.sock"), name("config.sock")], bauds: [0; 2] };
     let mut board = open(&kind, 8, false).unwrap();
     let report = run(&mut *board, &image(0), &options(Source::Random, 6_000, Faults::default(), 3), &mut |_| ());
     let report = report.unwrap();

@@ -1,6 +1,7 @@
 //! `truepath hil`: a board under setpoints and faults, compared with the host answer by answer.
 
 mod attack;
+mod bring_up;
 mod on_board;
 mod onlooker;
 mod place;
@@ -9,7 +10,7 @@ mod run;
 mod trust;
 
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path as FilePath, PathBuf};
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
@@ -54,6 +55,9 @@ pub struct Arguments {
     /// its last reset; afterwards it takes no image any more.
     #[arg(long, requires = "image", conflicts_with_all = ["attack", "job", "setpoints", "random", "count", "rate"])]
     trust: bool,
+    /// The first day of a board, step by step, as docs/bringup.md has it: nothing but its two links may hang on it.
+    #[arg(long, requires = "image", conflicts_with_all = ["attack", "trust", "job", "setpoints", "random", "rate", "link"])]
+    bring_up: bool,
     /// Setpoints of the attack. [default: 1000000]
     #[arg(long, value_name = "N", requires = "attack", conflicts_with = "seconds")]
     ticks: Option<u64>,
@@ -100,9 +104,12 @@ struct PlaceArguments {
     /// Configuration link, as --port.
     #[arg(long, value_name = "PORT", required_if_eq("board", "serial"))]
     config_port: Option<String>,
-    /// Bits per second of serial ports.
+    /// Bits per second of --port, where it is a serial one; 3000000 of a NUCLEO.
     #[arg(long, value_name = "BAUD", default_value_t = 921_600)]
     baud: u32,
+    /// Bits per second of --config-port, where it is a serial one.
+    #[arg(long, value_name = "BAUD", default_value_t = 921_600)]
+    config_baud: u32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -131,6 +138,9 @@ pub(crate) fn main(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fai
         image::check(&bytes, path)?;
         let report = trust::run(&mut *attended(&kind(arguments)?)?, &bytes)?;
         return terminal.tell(&report, || report.words());
+    }
+    if let (true, Some(path)) = (arguments.bring_up, &arguments.image) {
+        return brought_up(arguments, path, terminal);
     }
     let options = options(arguments)?;
     let given = arguments.image.as_deref().map(|path| {
@@ -185,6 +195,24 @@ fn attacked(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
     report.alarm.map_or(Ok(()), |alarm| Err(BenchError::Alarm(alarm).into()))
 }
 
+/// The first day of a board; a step that fails is an error.
+fn brought_up(arguments: &Arguments, image: &FilePath, terminal: &Terminal) -> Result<(), Failure> {
+    let bytes = image::read(image)?;
+    image::check(&bytes, image)?;
+    // Frame by frame, as it is to be used.
+    let kind = match kind(arguments)? {
+        Kind::VirtualBulk { elf } => Kind::VirtualUart { elf },
+        kind => kind,
+    };
+    let opened = |paced| open(&kind, arguments.window, paced);
+    let day = bring_up::bring_up(&opened, &bytes, arguments.count.unwrap_or(20_000), &mut |step| terminal.note(step))?;
+    terminal.tell(&day, || day.words())?;
+    day.failed().map_or(Ok(()), |step| {
+        Err(BenchError::Differs(format!("step {}, {}: {}, wanted {}", step.number, step.what, step.found, step.wanted))
+            .into())
+    })
+}
+
 fn options(arguments: &Arguments) -> Result<Options, Failure> {
     let (source, count, file_hz) = match (&arguments.setpoints, arguments.random) {
         (Some(path), _) => {
@@ -216,7 +244,7 @@ fn kind(arguments: &Arguments) -> Result<Kind, BenchError> {
         (BoardArgument::Virtual, _) => Kind::VirtualBulk { elf },
         (BoardArgument::Serial, _) => {
             let names = [&place.port, &place.config_port].map(|name| name.clone().unwrap_or_default());
-            Kind::Ports { names, baud: place.baud }
+            Kind::Ports { names, bauds: [place.baud, place.config_baud] }
         }
     })
 }

@@ -23,8 +23,8 @@ pub enum Kind {
     Ports {
         /// Serial ports, Unix sockets or `tcp:HOST:PORT`.
         names: [String; 2],
-        /// Bits per second of a serial port.
-        baud: u32,
+        /// Bits per second of each, where it is a serial port.
+        bauds: [u32; 2],
     },
 }
 
@@ -66,9 +66,9 @@ fn opened(kind: &Kind, window: u32, paced: bool, held: bool) -> Result<Box<dyn B
             let name = "virtual board in QEMU, UARTs over sockets".to_owned();
             Box::new(UartBoard::new(name, lines, window, paced, Some(emulator)))
         }
-        Kind::Ports { names, baud } => {
-            let line = |name: &str| Line::open(name, *baud).map_err(|e| BenchError::open(name, &e));
-            let lines = [line(&names[0])?, line(&names[1])?];
+        Kind::Ports { names, bauds } => {
+            let line = |name: &str, baud| Line::open(name, baud).map_err(|e| BenchError::open(name, &e));
+            let lines = [line(&names[0], bauds[0])?, line(&names[1], bauds[1])?];
             Box::new(UartBoard::new(names.join(", "), lines, window, paced, None))
         }
     })
