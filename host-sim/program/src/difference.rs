@@ -2,9 +2,11 @@
 //!
 //! The numbers are counted from the written text by [`super::proof`], not taken from the writer.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use truepath_core::gcode::Lines;
+use truepath_core::geometry::Curve;
 
 use super::deviation::distance;
 use super::edit::{BlockEdit, RewriteOptions};
@@ -82,7 +84,8 @@ impl Difference {
         options: &RewriteOptions,
     ) -> Self {
         let kink = proof.kinks.iter().copied().fold(Kink::default(), |a, b| if b.degrees > a.degrees { b } else { a });
-        let others = touched.filter(|line| edits.iter().all(|e| e.line != *line)).collect();
+        let edited: BTreeSet<u32> = edits.iter().map(|edit| edit.line).collect();
+        let others = touched.filter(|line| !edited.contains(line)).collect();
         Self {
             program_lines: Lines::new(program).count(),
             contour_lines_changed: edits.len() - kept,
@@ -172,9 +175,13 @@ impl Difference {
 }
 
 fn largest_shift(moves: &[Move], edits: &[BlockEdit]) -> Shift {
+    let mut of_line: BTreeMap<u32, Vec<Curve>> = BTreeMap::new();
+    for (line, curve) in moves.iter().filter_map(|step| Some((step.line, step.curve()?))) {
+        of_line.entry(line).or_default().push(curve);
+    }
     let mut largest = Shift::default();
     for edit in edits {
-        let curves: Vec<_> = moves.iter().filter(|m| m.line == edit.line).filter_map(Move::curve).collect();
+        let curves = of_line.get(&edit.line).map_or(&[][..], Vec::as_slice);
         let (Some(first), Some(last)) = (curves.first(), curves.last()) else { continue };
         let ends = [(edit.samples.first(), first.start()), (edit.samples.last(), last.end())];
         let displaced = ends.into_iter().filter_map(|(sample, nominal)| {
