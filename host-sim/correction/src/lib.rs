@@ -38,7 +38,7 @@ pub mod inspection;
 pub mod learn;
 pub mod learning;
 pub mod misfit;
-mod parallel_walls;
+pub mod parallel_walls;
 pub mod plan;
 pub mod planned;
 pub mod plausible;

@@ -7,13 +7,16 @@
 //! A design reads the walls some thirty times, at thirteen heights that do not depend on each other
 //! ([`truepath_core::correct::WallReader`]). The cutter's positions at all heights of a sample are found together, since they share
 //! most of the force, and those of one stretch beside those of another; then half of the heights are read on a thread of their own.
+//! Where walls are asked for at a few places only, the cutter's positions are found where one of them asks.
+
+use std::cell::RefCell;
 
 use rayon::prelude::*;
 use rayon::{current_num_threads, join};
 use truepath_core::correct::{Band, HEIGHTS, Profile, WallReader, begin, finish, read_slice};
-use truepath_core::cut::{Envelope, Loop, Passage, Path, State};
+use truepath_core::cut::{Displacements, Envelope, Heights, Kept, Loop, Passage, Path, State, WallError};
 use truepath_core::geometry::Vector;
-use truepath_core::units::Real;
+use truepath_core::units::{Offset, Real};
 
 /// Slices of the band.
 const SLICES: usize = HEIGHTS as usize;
@@ -22,6 +25,8 @@ const STRETCH: usize = 512;
 /// Least samples of a stretch that the cutter is run over by itself, and before it.
 const RUN: usize = 2048;
 const LEAD: usize = 64;
+/// Places that have so many samples each are few: of most samples nobody asks where the cutter is.
+const FEW: usize = 16;
 
 /// Memory for the heights.
 #[derive(Clone, Debug)]
@@ -86,7 +91,7 @@ pub(crate) fn displace<const N: usize>(machine: &Loop, states: &[State], heights
 }
 
 /// As [`Loop::run`], to the last bit, on all processors.
-pub(crate) fn run(
+pub fn run(
     machine: &Loop,
     from: usize,
     states: &mut [State],
@@ -126,6 +131,116 @@ fn stretch_by_stretch(
         }
     }
     all
+}
+
+/// The wall errors that states of a run over the working samples of a path leave beside places, which are samples of it, at heights of
+/// the engaged depth; `None` where no wall stands.
+pub fn walls_at<const N: usize>(
+    machine: &Loop,
+    states: &[State],
+    heights: [Real; N],
+    places: &[usize],
+) -> Vec<[Option<Offset>; N]> {
+    if are_few(states, places) {
+        return walls_at_few(machine, states.len(), |slot| states.get(slot).copied(), heights, places);
+    }
+    let mut displacements: [Vec<Vector>; N] = std::array::from_fn(|_| vec![Vector::ZERO; states.len()]);
+    displace(machine, states, heights, displacements.each_mut().map(Vec::as_mut_slice));
+    let row = |displacements: &Vec<Vector>| {
+        let envelope = Envelope::new(machine.path, machine.path.working().start, displacements);
+        let mut ahead = 0;
+        let mut wall = |place: usize| beside(machine, place, &mut ahead, |guess| envelope.error(place, guess));
+        places.iter().map(|place| wall(*place)).collect::<Vec<_>>()
+    };
+    let rows: Vec<Vec<Option<Offset>>> = displacements.par_iter().map(row).collect();
+    (0..places.len()).map(|at| std::array::from_fn(|height| rows[height][at])).collect()
+}
+
+/// The same of a machine that differs little from one with known states and cuts with the same commands. Where the places are few each
+/// state that makes a wall is found by itself, from the known one: within the tolerance of the elastic loop, some nanometres, that of a
+/// run from start to end.
+pub(crate) fn walls_near<const N: usize>(
+    machine: &Loop,
+    known: &[State],
+    heights: [Real; N],
+    places: &[usize],
+) -> Vec<[Option<Offset>; N]> {
+    let start = machine.path.working().start;
+    if are_few(known, places) {
+        let mut kept = Kept::default();
+        let state = |slot: usize| {
+            let State { commanded, displacement, .. } = *known.get(slot)?;
+            machine.state(&mut kept, start + slot, commanded, displacement).map(|(state, _)| state)
+        };
+        return walls_at_few(machine, known.len(), state, heights, places);
+    }
+    let mut states = vec![State::REST; known.len()];
+    run(machine, start, &mut states, &|index| known.get(index - start).map_or(Vector::ZERO, |state| state.commanded));
+    walls_at(machine, &states, heights, places)
+}
+
+fn are_few(states: &[State], places: &[usize]) -> bool {
+    places.len() * FEW <= states.len()
+}
+
+/// From states that are asked for one by one, counted from the first of so many.
+fn walls_at_few<const N: usize>(
+    machine: &Loop,
+    states: usize,
+    state: impl FnMut(usize) -> Option<State>,
+    heights: [Real; N],
+    places: &[usize],
+) -> Vec<[Option<Offset>; N]> {
+    let (path, start) = (machine.path, machine.path.working().start);
+    let heights = Heights::new(machine, heights);
+    let sought = RefCell::new(Sought { machine, state, heights, slots: vec![0; states], known: Vec::new() });
+    let mut envelopes: [_; N] =
+        std::array::from_fn(|height| (Envelope::of(path, start, AtHeight { of: &sought, height }), 0));
+    let mut each = |place: usize| {
+        envelopes.each_mut().map(|(envelope, ahead)| beside(machine, place, ahead, |guess| envelope.read(place, guess)))
+    };
+    places.iter().map(|place| each(*place)).collect()
+}
+
+/// The wall error beside a place, made about as far before or behind it as that beside the place before.
+fn beside(
+    machine: &Loop,
+    place: usize,
+    ahead: &mut isize,
+    error: impl FnOnce(usize) -> Option<WallError>,
+) -> Option<Offset> {
+    let wall = error(place.saturating_add_signed(*ahead))?;
+    *ahead = wall.made_by as isize - place as isize;
+    Some(wall.error + machine.undersize)
+}
+
+/// Displacements at all heights of the samples that were asked for.
+struct Sought<'a, S, const N: usize> {
+    machine: &'a Loop<'a>,
+    state: S,
+    heights: Heights<N>,
+    /// Where they are among the known ones, for every sample, counted from 1; 0 for nowhere.
+    slots: Vec<u32>,
+    known: Vec<[Vector; N]>,
+}
+
+/// Those of one height.
+struct AtHeight<'s, 'a, S, const N: usize> {
+    of: &'s RefCell<Sought<'a, S, N>>,
+    height: usize,
+}
+
+impl<S: FnMut(usize) -> Option<State>, const N: usize> Displacements for AtHeight<'_, '_, S, N> {
+    fn displacement(&mut self, slot: usize) -> Option<Vector> {
+        let mut sought = self.of.borrow_mut();
+        let Sought { machine, state, heights, slots, known } = &mut *sought;
+        let at = slots.get_mut(slot)?;
+        if *at == 0 {
+            known.push(machine.at_heights(heights, &state(slot)?));
+            *at = known.len() as u32;
+        }
+        known.get(*at as usize - 1)?.get(self.height).copied()
+    }
 }
 
 #[cfg(test)]

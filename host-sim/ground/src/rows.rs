@@ -9,20 +9,42 @@ pub fn add_scaled(to: &mut [f64], from: &[f64], by: f64) {
     }
 }
 
-/// Adds every one of some rows, each times a number, one after the other; rows are as long as the one they are added to.
-pub fn add_all_scaled(to: &mut [f64], rows: &[(&[f64], f64)]) {
-    // Block by block, so that the sums stay in registers: every number is added to in the order of the rows all the same.
-    const BLOCK: usize = 8;
-    let (blocks, rest) = to.as_chunks_mut::<BLOCK>();
-    for (at, sums) in blocks.iter_mut().enumerate() {
-        for (row, by) in rows {
-            if let Some(part) = row.get(at * BLOCK..).and_then(|rest| rest.first_chunk::<BLOCK>()) {
-                sums.iter_mut().zip(part).for_each(|(sum, from)| *sum += from * by);
+/// Numbers of a block.
+const BLOCK: usize = 8;
+
+/// Rows that are added to others many times over, each times a number. A block of every row lies behind that of the row before, so that
+/// sums stay in registers and memory is read from start to end.
+#[derive(Clone, Debug)]
+pub struct Weighable {
+    rows: usize,
+    blocks: Vec<[f64; BLOCK]>,
+}
+
+impl Weighable {
+    /// Of rows as long as `length`; a shorter one ends with zeros.
+    pub fn of<'a>(rows: impl Iterator<Item = &'a [f64]> + Clone, length: usize) -> Self {
+        let block = |at: usize| {
+            rows.clone().map(move |row| {
+                let mut block = [0.0; BLOCK];
+                let part = row.get(at * BLOCK..length.min(row.len())).unwrap_or_default();
+                block.iter_mut().zip(part).for_each(|(slot, number)| *slot = *number);
+                block
+            })
+        };
+        Self { rows: rows.clone().count(), blocks: (0..length.div_ceil(BLOCK)).flat_map(block).collect() }
+    }
+
+    /// Adds every row times its weight to a row as long as they, one after the other.
+    pub fn add(&self, to: &mut [f64], weights: &[f64]) {
+        for (to, blocks) in to.chunks_mut(BLOCK).zip(self.blocks.chunks(self.rows.max(1))) {
+            let mut sums = [0.0; BLOCK];
+            sums.iter_mut().zip(&*to).for_each(|(sum, number)| *sum = *number);
+            for (block, by) in blocks.iter().zip(weights) {
+                sums.iter_mut().zip(block).for_each(|(sum, number)| *sum += number * by);
             }
+            to.iter_mut().zip(sums).for_each(|(to, sum)| *to = sum);
         }
     }
-    let done = blocks.len() * BLOCK;
-    rows.iter().for_each(|(row, by)| add_scaled(rest, row.get(done..).unwrap_or_default(), *by));
 }
 
 /// Adds one number to all of a row.
@@ -79,9 +101,9 @@ mod tests {
         add(&mut row[..2], 0.5);
         let start: Vec<f64> = (0..19).map(|k| f64::from(k) / 7.0).collect();
         let (mut together, mut each) = (start.clone(), start.clone());
-        let rows: Vec<(&[f64], f64)> = [0.1, -0.3, 1.7].iter().map(|by| (start.as_slice(), *by)).collect();
-        add_all_scaled(&mut together, &rows);
-        rows.iter().for_each(|(row, by)| add_scaled(&mut each, row, *by));
+        let (rows, weights) = ([&start[..], &[3.0, 0.1], &start], [0.1, -0.3, 1.7]);
+        Weighable::of(rows.into_iter(), start.len()).add(&mut together, &weights);
+        rows.iter().zip(weights).for_each(|(row, by)| add_scaled(&mut each, row, by));
         assert_eq!(together, each);
         assert_eq!((largest(&row), largest_mean(&row, 2)), (3.0, 2.5));
         let mut all = Vec::new();

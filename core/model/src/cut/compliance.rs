@@ -38,7 +38,7 @@ impl Compliance {
         let fx = Real::dot(force.0, normal.x, force.1, heading.x);
         let fy = Real::dot(force.0, normal.y, force.1, heading.y);
         let micrometres = |a: Real, b: Real, c: Real, d: Real| {
-            Offset::from_nm(Real::dot(a, b, c, d).times(Real::from_int(1000)).round_to_int())
+            Offset::from_nm(Real::from_bits(Real::dot(a, b, c, d).bits().saturating_mul(1000)).round_to_int())
         };
         Vector { x: micrometres(self.xx(), fx, self.cross, fy), y: micrometres(self.cross, fx, self.yy(), fy) }
     }

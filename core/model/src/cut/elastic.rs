@@ -6,6 +6,7 @@
 //! left; the iteration is bounded and cannot hang.
 
 use super::compliance::Compliance;
+use super::engagement::Exit;
 use super::force::{Basis, Flutes, ForceTable, SplitForce, stretches};
 use super::path::Path;
 use super::setup::{Coefficients, Runout, WallLaw};
@@ -62,15 +63,27 @@ pub struct Passage {
 #[derive(Clone, Debug)]
 pub struct Heights<const N: usize> {
     fractions: [Real; N],
+    /// Those of the compliance there.
+    factors: [Real; N],
     flutes: [Flutes; N],
     teeth: Teeth,
 }
 
 impl<const N: usize> Heights<N> {
-    /// Of no place yet.
-    pub const fn new(fractions: [Real; N]) -> Self {
-        Self { fractions, flutes: [Flutes::NONE; N], teeth: Teeth::BLANK }
+    /// Of a machine, and no place yet.
+    pub fn new(machine: &Loop, fractions: [Real; N]) -> Self {
+        let factors = fractions.map(|fraction| machine.compliance.height_factor(fraction));
+        Self { fractions, factors, flutes: [Flutes::NONE; N], teeth: Teeth::BLANK }
     }
+}
+
+/// What is kept of a state for the next one of the same machine.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Kept {
+    feed: Option<Real>,
+    /// That of the feed.
+    chip_scale: Real,
+    exit: Exit,
 }
 
 /// Iterations of the loop at one sample.
@@ -108,17 +121,17 @@ impl Loop<'_> {
     /// Solves the loop at a sample for a commanded displacement, from a first guess of the deflection.
     /// Returns the state and the number of iterations.
     pub fn settle(&self, index: usize, commanded: Vector, guess: Vector, chip_scale: Real) -> (State, u32) {
-        self.settle_about(index, commanded, guess, chip_scale, &mut 0)
+        self.settle_about(index, commanded, guess, chip_scale, &mut Exit::default())
     }
 
-    /// The same; `exit` as in [`Path::engagement_about`].
+    /// The same, with what is kept of the last engagement.
     fn settle_about(
         &self,
         index: usize,
         commanded: Vector,
         guess: Vector,
         chip_scale: Real,
-        exit: &mut usize,
+        exit: &mut Exit,
     ) -> (State, u32) {
         let mut x = guess;
         let mut before: Option<(Vector, Vector)> = None;
@@ -156,7 +169,7 @@ impl Loop<'_> {
     }
 
     fn mean(&self, engaged: Real) -> SplitForce {
-        self.table.mean(self.path.setup(), &self.coefficients, engaged)
+        self.table.mean((self.path.setup(), self.path.helix()), &self.coefficients, engaged)
     }
 
     /// Engagement, normal and mean deflection for a centre displaced from a sample.
@@ -165,7 +178,7 @@ impl Loop<'_> {
         index: usize,
         displacement: Vector,
         chip_scale: Real,
-        exit: &mut usize,
+        exit: &mut Exit,
     ) -> Option<(Real, Direction, Vector)> {
         let frame = self.path.frame(index, displacement)?;
         let engaged = self.path.engagement_about(index, displacement, &frame, exit);
@@ -190,34 +203,43 @@ impl Loop<'_> {
         mut commanded: impl FnMut(usize) -> Vector,
     ) -> Passage {
         let mut passage = Passage::default();
-        let mut feed = None;
-        let mut chip_scale = Real::ZERO;
-        let mut exit = 0;
+        let mut kept = Kept::default();
         for (k, slot) in states.iter_mut().enumerate() {
             let index = from.saturating_add(k);
-            let Some(sample) = self.path.samples().get(index) else { break };
-            if feed != Some(sample.feed) {
-                feed = Some(sample.feed);
-                chip_scale = self.coefficients.chip_scale(self.path.setup().feed_per_tooth(sample.feed));
-            }
-            if self.path.is_pivot(index) {
-                // Nothing is cut on the spot: the machine stands, and the cutter springs back to where it was sent.
-                *slot = State { commanded: commanded(index), normal: sample.normal, chip_scale, ..State::REST };
+            let Some((state, iterations)) = self.state(&mut kept, index, commanded(index), *guess) else { break };
+            *slot = state;
+            if iterations == 0 {
                 continue;
             }
-            let (state, iterations) = self.settle_about(index, commanded(index), *guess, chip_scale, &mut exit);
             *guess = state.displacement;
             passage.iterations = passage.iterations.saturating_add(iterations);
             passage.unsettled = passage.unsettled.saturating_add(u32::from(state.residual > UNSETTLED));
             passage.worst_residual = passage.worst_residual.max(state.residual);
-            *slot = state;
         }
         passage
     }
 
+    /// The state at a sample for a commanded displacement, from a first guess of the deflection, and the number of iterations: 0 where
+    /// the path turns on the spot. `None` beyond the path.
+    #[inline]
+    pub fn state(&self, kept: &mut Kept, index: usize, commanded: Vector, guess: Vector) -> Option<(State, u32)> {
+        let sample = self.path.samples().get(index)?;
+        if kept.feed != Some(sample.feed) {
+            kept.feed = Some(sample.feed);
+            kept.chip_scale = self.coefficients.chip_scale(self.path.setup().feed_per_tooth(sample.feed));
+        }
+        let chip_scale = kept.chip_scale;
+        if self.path.is_pivot(index) {
+            // Nothing is cut on the spot: the machine stands, and the cutter springs back to where it was sent.
+            return Some((State { commanded, normal: sample.normal, chip_scale, ..State::REST }, 0));
+        }
+        Some(self.settle_about(index, commanded, guess, chip_scale, &mut kept.exit))
+    }
+
     /// The state of an undisplaced cutter: the engagement the program intends.
     pub fn nominal(&self, index: usize, chip_scale: Real) -> State {
-        let Some((engaged, normal, displacement)) = self.push(index, Vector::ZERO, chip_scale, &mut 0) else {
+        let Some((engaged, normal, displacement)) = self.push(index, Vector::ZERO, chip_scale, &mut Exit::default())
+        else {
             return State::REST;
         };
         State { engaged, normal, displacement, chip_scale, ..State::REST }
@@ -242,17 +264,17 @@ impl Loop<'_> {
 
     /// What the cutter is deflected by at several heights of a place, with the reach of the tooth that makes the wall.
     pub fn deflections<const N: usize>(&self, heights: &mut Heights<N>, state: &State) -> [Vector; N] {
-        let Heights { fractions, flutes, teeth } = heights;
+        let Heights { fractions, factors, flutes, teeth } = heights;
         let is_true = self.path.setup().runout == Runout::NONE;
         let (mut end, mut known) = (None, [Vector::ZERO; N]);
         let heading = self.path.setup().wall.heading(state.normal);
-        for ((slot, fraction), flutes) in known.iter_mut().zip(fractions).zip(flutes) {
+        for (((slot, fraction), factor), flutes) in known.iter_mut().zip(fractions).zip(factors).zip(flutes) {
             let alike = self.force_at((flutes, &mut end), state, *fraction);
             let (force, reach) =
                 if is_true { (alike, Vector::ZERO) } else { self.longest(teeth, state, *fraction, alike) };
             let force = force.total(state.chip_scale);
             let push = self.compliance.displacement(state.normal, heading, force);
-            *slot = push.scaled(self.compliance.height_factor(*fraction)) + reach;
+            *slot = push.scaled(*factor) + reach;
         }
         known
     }

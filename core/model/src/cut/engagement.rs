@@ -74,12 +74,11 @@ impl Path<'_> {
     /// Looks at the stock from the sample to 2.2 radii ahead; stretches that cannot reach the circle are stepped
     /// over, so the cost is bounded by the window and does not depend on the length of the contour.
     pub fn engagement(&self, index: usize, displacement: Vector, frame: &Frame) -> Real {
-        self.engagement_about(index, displacement, frame, &mut 0)
+        self.engagement_about(index, displacement, frame, &mut Exit::default())
     }
 
-    /// The same. `exit` is the sample before the place where the circle of the last engagement left the stock: where stock
-    /// stands beside every sample, it is looked for from there, and only where that finds none from the beginning.
-    pub(super) fn engagement_about(&self, index: usize, displacement: Vector, frame: &Frame, exit: &mut usize) -> Real {
+    /// The same, with what is kept of the last engagement on this path.
+    pub(super) fn engagement_about(&self, index: usize, displacement: Vector, frame: &Frame, kept: &mut Exit) -> Real {
         let samples = self.samples();
         let Some(here) = samples.get(index) else { return Real::ZERO };
         let radius = self.setup().radius;
@@ -91,22 +90,35 @@ impl Path<'_> {
             end: here.s + radius + radius + radius.scaled(Real::ratio(1, 5)),
         };
         let start = frame.index.min(index);
-        // Where stock stands everywhere, the last place inside is the same wherever the walk begins before it.
-        let stocked = || {
-            let near = exit.saturating_sub(1);
-            let from = |start| walk.last_of_stocked(samples, start).filter(|at| walk.is_ahead_of(samples, *at));
-            (near > start).then(|| from(near)).flatten().or_else(|| from(start))
+        let mut stocked = || {
+            kept.end = self.first_beyond(walk.end, kept.end);
+            let within = samples.get(start..kept.end)?;
+            let last = walk.last_of_stocked(within)?.saturating_add(start);
+            Some(last).filter(|at| walk.is_ahead_of(samples, *at))
         };
         let known = if self.is_stocked() && radius < REACH { stocked() } else { None };
         let Some(inside) = known.or_else(|| walk.last_of_all(samples, start)) else { return Real::ZERO };
-        *exit = inside;
         let (Some(a), Some(b)) = (samples.get(inside), samples.get(inside.saturating_add(1))) else {
             return Real::ZERO;
         };
-        let exit = crossing(a, b, walk.centre, walk.radius).from(walk.centre);
+        let sagitta = match kept.sagitta {
+            Some((at, sagitta)) if at == inside => sagitta,
+            _ => sagitta(a, b),
+        };
+        kept.sagitta = Some((inside, sagitta));
+        let exit = crossing((a.stock, b.stock, sagitta), walk.centre, walk.radius).from(walk.centre);
         let angle = atan2(exit.along(frame.heading).nm(), exit.along(frame.normal).nm());
         angle.max(Real::ZERO)
     }
+}
+
+/// What is kept of an engagement for the next one on the same path, which is mostly near.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Exit {
+    /// The first sample behind the stock that was looked at.
+    end: usize,
+    /// The sample before the place where the circle left the stock, and how far the stock bulges behind it.
+    sagitta: Option<(usize, Vector)>,
 }
 
 /// Radius and components whose squares add up in 64 bits.
@@ -138,27 +150,26 @@ impl Walk {
         samples.get(at).is_some_and(|sample| self.is_ahead(sample))
     }
 
-    /// The last sample from `start` on whose stock is inside the circle, where stock stands beside every sample: distances
-    /// are told by their squares, and only so much is stepped over as surely does not reach the circle. Of a radius below
-    /// [`REACH`].
-    fn last_of_stocked(&self, samples: &[Sample], start: usize) -> Option<usize> {
+    /// The last sample whose stock is inside the circle, where stock stands beside every sample: looked for from the last one back,
+    /// which begins with the longest steps. Distances are told by their squares, and only so much is stepped over as surely does not
+    /// reach the circle. Of a radius below [`REACH`].
+    fn last_of_stocked(&self, samples: &[Sample]) -> Option<usize> {
         let radius = self.radius.nm();
         let square = radius.wrapping_mul(radius);
         // As far from the centre as rounds to less than the radius.
         let inside = square.wrapping_sub(radius);
         // The largest distance was rounded.
         let stride = self.stride.saturating_add(1);
-        // |d − r| = |d² − r²|/(d + r), and d + r is 2 radii at most inside, √2 + 1 at most below √2 radii. In strides, by reciprocals:
-        // a division of 64 bits is slow on a PC and a routine on the microcontroller. Rounded down, which steps over less.
-        let (double, near) = (radius.wrapping_mul(2), radius.wrapping_mul(5) / 2);
-        let (within, beyond) = (per(double.saturating_mul(stride)), per(near.saturating_add(1).saturating_mul(stride)));
+        // d − r = (d² − r²)/(d + r), and d + r is √2 + 1 radii at most below √2 radii. In strides, by a reciprocal: a division of
+        // 64 bits is slow on a PC and a routine on the microcontroller. Rounded down, which steps over less.
+        let near = radius.wrapping_mul(5) / 2;
+        let beyond = per(near.saturating_add(1).saturating_mul(stride));
         let radii = radius.checked_div(stride).unwrap_or(0).unsigned_abs();
         let (centre_x, centre_y) = (self.centre.x.nm(), self.centre.y.nm());
-        let (mut last, mut at) = (None, start);
-        while let Some(sample) = samples.get(at) {
-            if sample.s > self.end {
-                break;
-            }
+        let mut behind = samples.len();
+        loop {
+            let at = behind.checked_sub(1)?;
+            let sample = samples.get(at)?;
             // Of places within 4 · 10⁹ m.
             let x = sample.stock.x.nm().wrapping_sub(centre_x);
             let y = sample.stock.y.nm().wrapping_sub(centre_y);
@@ -167,8 +178,7 @@ impl Walk {
             } else {
                 let distance = x.wrapping_mul(x).wrapping_add(y.wrapping_mul(y));
                 if distance <= inside {
-                    last = Some(at);
-                    times(square.wrapping_sub(distance), within)
+                    return Some(at);
                 } else if distance < square.wrapping_mul(2) {
                     times(distance.wrapping_sub(square), beyond)
                 } else if distance < square.wrapping_mul(4) {
@@ -178,9 +188,8 @@ impl Walk {
                     radii
                 }
             };
-            at = at.saturating_add(skip.max(1) as usize);
+            behind = behind.saturating_sub(skip.max(1) as usize);
         }
-        last
     }
 
     fn is_ahead(&self, sample: &Sample) -> bool {
@@ -219,11 +228,22 @@ const fn times(number: i64, reciprocal: u64) -> u64 {
 /// Newton steps for the crossing of the circle with the curved stock between two samples.
 const CROSSING_STEPS: usize = 4;
 
-/// Where the stock between two samples, the first inside the circle and the second outside, crosses it. The stock
-/// bulges from the chord like the arc its normals belong to.
-fn crossing(a: &Sample, b: &Sample, centre: Point, radius: Offset) -> Point {
+/// How far the stock between two samples bulges from its chord, like the arc that its normals belong to.
+fn sagitta(a: &Sample, b: &Sample) -> Vector {
     let chord = b.stock.from(a.stock);
-    let spoke = a.stock.from(centre);
+    // A straight stock, as most is, has no bulge and needs no direction.
+    let bulge = a.normal.cross(b.normal) * Real::ratio(1, 8);
+    let along = if bulge == Real::ZERO { None } else { chord.direction() };
+    along.map_or(Vector::ZERO, |along| along.right().times(chord.length().scaled(bulge)))
+}
+
+/// Where the stock between two samples, the first inside the circle and the second outside, crosses it.
+fn crossing((a, b, sagitta): (Point, Point, Vector), centre: Point, radius: Offset) -> Point {
+    let chord = b.from(a);
+    if chord == Vector::ZERO {
+        return a;
+    }
+    let spoke = a.from(centre);
     // |spoke + u·chord|² = r²
     let (p, q) = (chord.dot(chord), spoke.dot(chord));
     let c = spoke.dot(spoke).wrapping_sub(i128::from(radius.nm()).wrapping_mul(radius.nm().into()));
@@ -231,22 +251,18 @@ fn crossing(a: &Sample, b: &Sample, centre: Point, radius: Offset) -> Point {
     let root = isqrt_rounded(discriminant.unsigned_abs()) as i128;
     let u = Real::narrow(truepath_units::div_rounded(root.saturating_sub(q) << Real::FRACTION_BITS, p));
     let u = u.max(Real::ZERO).min(Real::ONE);
-    if chord == Vector::ZERO {
-        return a.stock;
-    }
-    // A straight stock, as most is, has no bulge and needs no direction.
-    let bulge = a.normal.cross(b.normal) * Real::ratio(1, 8);
-    let along = if bulge == Real::ZERO { None } else { chord.direction() };
-    let sagitta = along.map_or(Vector::ZERO, |along| along.right().times(chord.length().scaled(bulge)));
-    let at = |u: Real| a.stock + chord.scaled(u) + sagitta.scaled(u * (Real::ONE - u) * Real::from_int(4));
+    let at = |u: Real| a + chord.scaled(u) + sagitta.scaled(u * (Real::ONE - u) * Real::from_int(4));
     // The chord gives the start; where stock and circle meet at a small angle its bulge takes a few Newton steps. A step
-    // that changes nothing is the last: every further one would be the same.
+    // that changes nothing is the last: every further one would be the same, as is one from a place on the circle.
     let (mut u, mut point) = (u, at(u));
     for _ in 0..CROSSING_STEPS {
         let reach = point.from(centre);
+        let miss = reach.length() - radius;
+        if miss == Offset::ZERO {
+            break;
+        }
         let Some(out) = reach.direction() else { break };
         let tangent = chord + sagitta.scaled((Real::ONE - u - u) * Real::from_int(4));
-        let miss = reach.length() - radius;
         let next = (u - miss.over(tangent.along(out))).max(Real::ZERO).min(Real::ONE);
         if next == u {
             break;
@@ -307,7 +323,7 @@ mod tests {
             // The stock of a path is continued until it is out of reach.
             prop_assume!(samples.last().is_some_and(|last| !is_inside(last)));
             let every = (start..samples.len()).rfind(|k| is_inside(&samples[*k]));
-            prop_assert_eq!(walk.last_of_stocked(&samples, start), every);
+            prop_assert_eq!(walk.last_of_stocked(&samples[start..]).map(|at| at + start), every);
         }
     }
 }

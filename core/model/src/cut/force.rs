@@ -78,6 +78,7 @@ impl Flutes {
 
 impl SplitForce {
     /// (normal, tangential) for a chip scale from [`Coefficients::chip_scale`].
+    #[inline]
     pub fn total(self, chip_scale: Real) -> (Real, Real) {
         (self.chip_n * chip_scale + self.edge_n, self.chip_t * chip_scale + self.edge_t)
     }
@@ -122,18 +123,22 @@ impl Basis {
         Self { chip_sine: chip * sine, chip_cosine: chip * cosine, sine, cosine }
     }
     /// The force in the wall frame on the tool (physics of P23 eq. 3; eq. 1 as printed is the force on the workpiece).
+    #[inline]
     pub(super) fn force(self, milling: Milling, k: &Coefficients) -> SplitForce {
-        let part = |tangential: Real, radial: Real, sine: Real, cosine: Real| match milling {
-            Milling::Climb => {
-                (-Real::dot(tangential, sine, radial, cosine), Real::dot(tangential, cosine, -radial, sine))
-            }
-            Milling::Conventional => {
-                (Real::dot(tangential, sine, -radial, cosine), -Real::dot(tangential, cosine, radial, sine))
-            }
-        };
-        let (chip_n, chip_t) = part(k.ktc, k.krc, self.chip_sine, self.chip_cosine);
-        let (edge_n, edge_t) = part(k.kte, k.kre, self.sine, self.cosine);
+        let (chip_n, chip_t) = in_wall_frame(milling, (k.ktc, k.krc), (self.chip_sine, self.chip_cosine));
+        let (edge_n, edge_t) = in_wall_frame(milling, (k.kte, k.kre), (self.sine, self.cosine));
         SplitForce { chip_n, chip_t, edge_n, edge_t }
+    }
+}
+
+/// (normal, tangential) for a tangential and a radial coefficient.
+#[inline]
+fn in_wall_frame(milling: Milling, (tangential, radial): (Real, Real), (sine, cosine): (Real, Real)) -> (Real, Real) {
+    match milling {
+        Milling::Climb => (-Real::dot(tangential, sine, radial, cosine), Real::dot(tangential, cosine, -radial, sine)),
+        Milling::Conventional => {
+            (Real::dot(tangential, sine, -radial, cosine), -Real::dot(tangential, cosine, radial, sine))
+        }
     }
 }
 
@@ -209,9 +214,8 @@ impl ForceTable {
     }
 
     /// Mean force over a revolution with the arc 0…φ₁ engaged, `N·b/2π · ∫₀^φ₁`, N.
-    pub fn mean(&self, setup: &CutSetup, coefficients: &Coefficients, engaged: Real) -> SplitForce {
-        let share = Real::from_int(setup.teeth.into()) * setup.axial_depth / Real::TAU;
-        self.antiderivative(engaged).scaled(share).force(setup.milling, coefficients)
+    pub fn mean(&self, (setup, helix): (&CutSetup, &Helix), coefficients: &Coefficients, engaged: Real) -> SplitForce {
+        self.antiderivative(engaged).scaled(helix.mm_in_mean).force(setup.milling, coefficients)
     }
 
     /// Force at the instant the wall at a height (mm above the tip) is generated, N.

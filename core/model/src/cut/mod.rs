@@ -31,6 +31,7 @@
 //! ```
 
 mod cantilever;
+mod coarse_look;
 mod compliance;
 mod corner;
 mod elastic;
@@ -47,7 +48,7 @@ mod wall;
 pub use cantilever::{Cantilever, ToolMaterial};
 pub use compliance::Compliance;
 pub(crate) use elastic::mixed;
-pub use elastic::{Heights, Loop, Passage, State};
+pub use elastic::{Heights, Kept, Loop, Passage, State};
 pub use engagement::Frame;
 pub use force::{ForceTable, SplitForce, chip_area};
 pub use path::{Path, PathError};

@@ -6,6 +6,7 @@
 //! runs on into itself; before the first and behind the last block of any other, path and stock are continued straight: a
 //! contour that starts by plunging starts fully engaged.
 
+use super::coarse_look::CoarseLook;
 use super::corner;
 use super::sample::Sample;
 use super::seam::Seam;
@@ -26,6 +27,7 @@ pub struct Path<'a> {
     closed: bool,
     /// Whether the raw stock stands beside every sample.
     stocked: bool,
+    look: CoarseLook,
     setup: CutSetup,
     helix: Helix,
 }
@@ -120,7 +122,8 @@ impl<'a> Path<'a> {
         let crowded = samples.iter().zip(samples.iter().skip(1)).any(crowds);
         let (closed, helix) = (closes_smoothly(contour, setup), setup.helix());
         let stocked = samples.iter().all(|s| s.on_surface);
-        Ok(Self { samples, first, count, step, stock_step, crowded, closed, stocked, setup: *setup, helix })
+        let look = CoarseLook::of(samples, setup, step);
+        Ok(Self { samples, first, count, step, stock_step, crowded, closed, stocked, look, setup: *setup, helix })
     }
 
     /// The same path with its raw stock moved along the normal of every sample by `shift`, positive towards the wall, in a
@@ -132,9 +135,8 @@ impl<'a> Path<'a> {
             *slot = Sample { stock: sample.stock + sample.normal.times(shift(sample)), ..*sample };
         }
         let samples: &'b [Sample] = used;
-        let Self { first, count, step, crowded, closed, stocked, setup, helix, .. } = *self;
         let stock_step = widest(samples, |s| s.stock);
-        Path { samples, first, count, step, stock_step, crowded, closed, stocked, setup, helix }
+        Path { samples, stock_step, ..*self }
     }
 
     /// The same path under another wall law.
@@ -187,6 +189,16 @@ impl<'a> Path<'a> {
     pub(super) const fn is_crowded(&self) -> bool {
         self.crowded
     }
+    /// What is known of the coarse looks of its envelope.
+    pub(super) const fn coarse_look(&self) -> &CoarseLook {
+        &self.look
+    }
+    /// The same path, of which nothing is known there.
+    #[cfg(test)]
+    pub(super) const fn without_clearance(mut self) -> Self {
+        self.look.clearance = 0;
+        self
+    }
     /// Whether the raw stock stands beside every sample: nowhere ends it at a corner.
     pub(super) const fn is_stocked(&self) -> bool {
         self.stocked
@@ -217,8 +229,18 @@ impl<'a> Path<'a> {
     }
     /// As [`index_at`](Self::index_at), the sooner found the nearer it is to `about`.
     pub(super) fn index_near(&self, s: Offset, about: usize) -> usize {
-        let is_before = |i: usize| self.samples.get(i).is_some_and(|x| x.s < s);
-        // The first that is not before s lies in from..=to.
+        self.nearest(s, self.first_not(|x| x.s < s, about))
+    }
+    /// Index of the first sample beyond an arc length, the sooner found the nearer it is to `about`.
+    pub(super) fn first_beyond(&self, s: Offset, about: usize) -> usize {
+        self.first_not(|x| x.s <= s, about)
+    }
+    /// The first sample of which something does not hold that holds of all before it and of none behind, the sooner found the nearer it
+    /// is to `about`.
+    #[inline]
+    fn first_not(&self, holds: impl Fn(&Sample) -> bool, about: usize) -> usize {
+        let is_before = |i: usize| self.samples.get(i).is_some_and(&holds);
+        // It lies in from..=to.
         let (mut from, mut to) = (about, about);
         let mut stride = 1usize;
         while is_before(to) {
@@ -235,7 +257,7 @@ impl<'a> Path<'a> {
             let middle = from.midpoint(to);
             if is_before(middle) { from = middle.saturating_add(1) } else { to = middle }
         }
-        self.nearest(s, from)
+        from
     }
     /// Of the sample at `after`, the first at or behind an arc length, and the one before it, the nearer one.
     fn nearest(&self, s: Offset, after: usize) -> usize {

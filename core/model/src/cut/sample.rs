@@ -43,4 +43,9 @@ impl Sample {
         rounds_corner: false,
         near_corner: false,
     };
+
+    /// Whether it is on an ordinary wall: one that stands, away from sharp inside corners.
+    pub(super) const fn is_plain(&self) -> bool {
+        self.on_wall && !self.near_corner
+    }
 }

@@ -80,6 +80,8 @@ pub struct Helix {
     pub mm_per_lag: Real,
     /// Angle between two teeth, rad.
     pub pitch: Real,
+    /// Engaged depth of all teeth over a turn, N·b/2π, mm/rad: what the mean force of a revolution counts of an immersion.
+    pub mm_in_mean: Real,
 }
 
 /// Teeth of a cutter.
@@ -130,7 +132,9 @@ impl CutSetup {
         let (sine, cosine) = sin_cos(self.helix_deg * Real::PI / Real::from_int(180));
         let lag = sine / cosine / self.radius.mm();
         let lag_per_mm = lag.max(STRAIGHT_FLUTE_LAG / self.axial_depth);
-        Helix { lag_per_mm, mm_per_lag: Real::ONE / lag_per_mm, pitch: Real::TAU / Real::from_int(self.teeth.into()) }
+        let teeth = Real::from_int(self.teeth.into());
+        let mm_in_mean = teeth * self.axial_depth / Real::TAU;
+        Helix { lag_per_mm, mm_per_lag: Real::ONE / lag_per_mm, pitch: Real::TAU / teeth, mm_in_mean }
     }
 }
 

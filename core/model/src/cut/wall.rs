@@ -4,6 +4,7 @@
 //! `e = min over centres a of (v·n − √(r² − (v·t)²))`, v = W − a. Positive: material left. It is not the deflection
 //! along n: where that changes along the path by g per unit length the envelope lies about r·g²/2 above it.
 
+use super::coarse_look::{EIGHTHS, clear};
 use super::elastic::{Heights, Loop, State};
 use super::path::Path;
 use super::sample::Sample;
@@ -103,7 +104,7 @@ impl<'a> Envelope<'a> {
         fractions: [Real; N],
         mut rows: [&mut [Vector]; N],
     ) {
-        let mut heights = Heights::new(fractions);
+        let mut heights = Heights::new(machine, fractions);
         for (at, state) in states.iter().enumerate() {
             for (row, displacement) in rows.iter_mut().zip(machine.at_heights(&mut heights, state)) {
                 if let Some(slot) = row.get_mut(at) {
@@ -157,8 +158,18 @@ impl<'a, D: Displacements> Envelope<'a, D> {
     }
 }
 
-/// Places of the coarse look to either side.
-const EIGHTHS: usize = 8;
+/// What [`Look::calm`] knows.
+#[derive(Clone, Copy, Debug)]
+struct Calm {
+    /// What is left for every sample that the other place is off, nm².
+    per_sample: i64,
+    /// What is lost at any, nm².
+    lost: i64,
+    /// What is lost for every nanometre by which the displacement is another one, nm.
+    per_change: i64,
+    /// It must be less than this, nm.
+    most: i64,
+}
 
 /// A look along the path for the cutter position that ends deepest beside a wall point.
 ///
@@ -180,6 +191,8 @@ struct Look<'e, 'a, D> {
     lowered: Point,
     /// Square of a distance of the centre that is certainly more than the radius, nm².
     clear: i64,
+    /// The displacement of the cutter at the sample beside the wall point.
+    own: Vector,
 }
 
 impl<'e, 'a, D: Displacements> Look<'e, 'a, D> {
@@ -188,9 +201,7 @@ impl<'e, 'a, D: Displacements> Look<'e, 'a, D> {
     fn beside(envelope: &'e mut Envelope<'a, D>, index: usize, guess: usize) -> Option<Self> {
         let (path, sample) = (envelope.path, envelope.path.samples().get(index)?);
         let (wall, normal) = (path.wall(sample), sample.normal);
-        let radius = path.setup().radius.nm();
-        // Rounding of the components and of the place, and a normal that is not quite one long.
-        let beyond = radius.saturating_add(radius >> 20).saturating_add(4);
+        let clear = clear(path.setup().radius);
         let samples = path.samples().get(envelope.from..).unwrap_or_default();
         let own = envelope.displacements.displacement(index.checked_sub(envelope.from)?)?;
         let mut look = Self {
@@ -202,7 +213,8 @@ impl<'e, 'a, D: Displacements> Look<'e, 'a, D> {
             lowest: Offset::MAX,
             made_by: index,
             lowered: wall,
-            clear: beyond.saturating_mul(beyond),
+            clear,
+            own,
         };
         // A circle that passes beside its own wall point makes none; that takes a displacement as large as the radius.
         let is_near = own.x.abs() + own.y.abs() < path.setup().radius;
@@ -233,20 +245,59 @@ impl<'e, 'a, D: Displacements> Look<'e, 'a, D> {
 
     /// Eighths of half a radius to both sides, counted in samples of the longest step; returns how many the whole is.
     fn by_samples(&mut self, index: usize) -> usize {
-        let path = self.envelope.path;
-        let reach = path.setup().radius.nm() / 2;
-        let far = reach.checked_div(path.step().nm()).unwrap_or(0).unsigned_abs() as usize;
+        let far = self.envelope.path.coarse_look().far;
         let strides = (1..=EIGHTHS).map(|eighth| far.saturating_mul(eighth) / EIGHTHS);
+        let places = |stride: usize| [index.saturating_add(stride), index.saturating_sub(stride)];
         // Mostly all of them end above the lowest gap, and nothing is taken.
-        let mut places =
-            strides.clone().flat_map(|stride| [index.saturating_add(stride), index.saturating_sub(stride)]);
-        if !places.all(|at| self.is_above(at)) {
-            for stride in strides {
-                self.at(index.saturating_add(stride));
-                self.at(index.saturating_sub(stride));
-            }
+        let moves_little = self.calm(index).is_some_and(|calm| {
+            strides.clone().all(|stride| places(stride).into_iter().all(|at| self.moves_little(&calm, at, stride)))
+        });
+        if !moves_little && !strides.clone().flat_map(places).all(|at| self.is_above(at)) {
+            strides.flat_map(places).for_each(|at| self.at(at));
         }
         far
+    }
+
+    /// How little the displacement must change along the path for no other place of the coarse look to make the wall; `None` where
+    /// that is not known.
+    ///
+    /// With d from the wall point W to the nominal centre of the other place, v and w the displacements here and there, τ the part of v
+    /// along the path, and the cutter here ending at W − n·g, the other centre is e = d + t·τ + (w − v) + n·δ from where it must end,
+    /// 0 ≤ δ ≤ 0.51·τ²/r, or farther on the far side where the lowest gap is below g. So
+    /// `e² ≥ d² − 2·|τ|·|d·t| − τ² − (25/8)·r·|w − v|` as long as τ ≤ r/16, and d·t ≤ r/2 is at most the way to the other place.
+    fn calm(&self, index: usize) -> Option<Calm> {
+        let path = self.envelope.path;
+        let (look, radius) = (path.coarse_look(), path.setup().radius.nm());
+        if !path.samples().get(index).is_some_and(Sample::is_plain) {
+            return None;
+        }
+        let [normal_x, normal_y] = self.coarse;
+        let across = self.own.x.nm().wrapping_mul(normal_y).wrapping_sub(self.own.y.nm().wrapping_mul(normal_x));
+        let along = (across >> 30).abs().saturating_add(2);
+        let is_near = self.own.x.abs() + self.own.y.abs() < path.setup().radius;
+        (is_near && along < radius / 16).then(|| Calm {
+            per_sample: look.clearance.wrapping_sub(along.wrapping_mul(path.step().nm()).wrapping_mul(2)),
+            lost: along.wrapping_mul(along).wrapping_add(radius.wrapping_mul(64)),
+            per_change: radius.wrapping_mul(25) / 8,
+            most: radius / 4,
+        })
+    }
+
+    /// Whether the displacement at a place so many samples off is so near to the own one that its circle certainly ends above the lowest
+    /// gap, or there is none.
+    #[inline]
+    fn moves_little(&mut self, calm: &Calm, at: usize, stride: usize) -> bool {
+        let Some(by) = self.envelope.displacements.displacement(at.wrapping_sub(self.envelope.from)) else {
+            return true;
+        };
+        let change =
+            by.x.nm()
+                .wrapping_sub(self.own.x.nm())
+                .wrapping_abs()
+                .saturating_add(by.y.nm().wrapping_sub(self.own.y.nm()).wrapping_abs());
+        let lost = change.wrapping_mul(calm.per_change).wrapping_add(calm.lost);
+        // The place itself is looked at anyway.
+        stride == 0 || (change < calm.most && lost <= calm.per_sample.saturating_mul(stride as i64))
     }
 
     /// The same by arc length: samples that stand close together hide what lies beyond them.
@@ -334,4 +385,71 @@ fn vertex(before: Offset, lowest: Offset, after: Offset) -> Offset {
     }
     lowest
         - Offset::from_nm(truepath_units::div_rounded(slope.saturating_mul(slope), curvature.saturating_mul(8)) as i64)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::arithmetic_side_effects, clippy::float_arithmetic, clippy::indexing_slicing, clippy::unwrap_used)]
+    use super::*;
+    use crate::cut::{CutSetup, Milling, Runout, WallLaw};
+    use proptest::prelude::*;
+    use std::vec::Vec;
+    use truepath_units::geometry::{Block, Contour, Curve, Side};
+
+    proptest! {
+        /// A straight wall, an inside arc and an outside one; displacements from still to wild.
+        #[test]
+        fn places_that_are_left_out_because_little_moves_would_have_made_no_wall(
+            radius in 2_000i64..10_000,
+            size in 0i64..500_000,
+            wave in 1.0f64..400.0,
+            noise in prop::collection::vec(-1i64..=1, 600),
+            roughness in prop_oneof![Just(0i64), 1i64..200, 1_000i64..100_000],
+        ) {
+            let setup = CutSetup {
+                radius: Offset::from_um(radius),
+                teeth: 4,
+                helix_deg: Real::from_int(30),
+                axial_depth: Real::from_int(10),
+                allowance: Offset::from_um(500),
+                spindle_rpm: Real::from_int(4000),
+                wall: Side::Right,
+                milling: Milling::of(Side::Right, true),
+                law: WallLaw::Helical,
+                runout: Runout::NONE,
+            };
+            let point = |x: i64, y: i64| Point::from_nm(x * 1_000_000, y * 1_000_000);
+            let curves = [
+                Curve::line(point(0, 0), point(20, 0)).unwrap(),
+                Curve::arc(point(20, 0), point(32, 12), point(20, 12), true).unwrap(),
+                Curve::arc(point(32, 12), point(44, 24), point(44, 12), false).unwrap(),
+            ];
+            let mut s = Offset::ZERO;
+            let blocks: Vec<Block> = curves
+                .into_iter()
+                .map(|curve| {
+                    let block = Block { curve, s, feed: Real::from_int(800), line: 1 };
+                    s += curve.length();
+                    block
+                })
+                .collect();
+            let contour = Contour::new(&blocks).unwrap();
+            let step = Offset::from_um(150);
+            let mut buffer = std::vec![Sample::BLANK; Path::samples_needed(&contour, &setup, step)];
+            let path = Path::sample(&contour, &setup, step, &mut buffer, |_| ()).unwrap();
+            prop_assert!(path.coarse_look().clearance > 0);
+            let all = path.without_clearance();
+            let displacements: Vec<Vector> = (0..path.samples().len())
+                .map(|i| {
+                    let turn = i as f64 / wave;
+                    let at = |v: f64, k: usize| (v * size as f64) as i64 + roughness * noise[(i + k) % noise.len()];
+                    Vector::from_nm(at(turn.cos(), 0), at(turn.sin(), 77))
+                })
+                .collect();
+            let [quick, thorough] = [&path, &all].map(|path| Envelope::new(path, 0, &displacements));
+            for index in path.first()..path.first() + path.count() {
+                prop_assert_eq!(quick.error(index, index + 1), thorough.error(index, index + 1), "{}", index);
+            }
+        }
+    }
 }

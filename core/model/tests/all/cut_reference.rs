@@ -72,7 +72,7 @@ fn the_mean_force_is_that_of_the_papers_record() {
     let table = ForceTable::new(Real::ZERO);
     let f = s.feed_per_tooth(real(400.0));
     let magnitude = |degrees: f64| {
-        let (n, t) = table.mean(&s, &coefficients(), real(degrees.to_radians())).total(f);
+        let (n, t) = table.mean((&s, &s.helix()), &coefficients(), real(degrees.to_radians())).total(f);
         float(n).hypot(float(t))
     };
     assert!((magnitude(45.573) - 150.0).abs() < 1.0, "{}", magnitude(45.573));
@@ -93,7 +93,7 @@ fn the_helix_decides_the_force_that_makes_a_height() {
             let got = float(table.at_height((&s, &s.helix()), &coefficients(), engaged, real(z)).total(f).0);
             assert!((got - f64::from(expected)).abs() < 1.0, "{degrees} z {z}: {got} instead of {expected}");
         }
-        let got = float(table.mean(&s, &coefficients(), engaged).total(f).0);
+        let got = float(table.mean((&s, &s.helix()), &coefficients(), engaged).total(f).0);
         assert!((got - f64::from(mean)).abs() < 1.0, "mean {got}");
     }
 }

@@ -9,10 +9,10 @@ use truepath_ground::units::{float, mm, nm, rounded};
 
 use super::allowance::Allowance;
 use super::evidence::{Factored, Task, discrepancy};
-use super::feature::{Engagement, Feature, Sensitivity};
-use super::kernel::{Extent, Kernel};
-use super::nominal::{by_stock, sensitivities, stock_sensitivities, with_stock};
-use super::points::{Points, Row, SHARED};
+use super::feature::{Feature, Sensitivity};
+use super::kernel::{Extent, Kernel, Pair};
+use super::nominal::{Nominal, by_stock, stock_sensitivities, with_stock};
+use super::points::{Points, Row, SHARED, WithPlace};
 
 /// One quantity of a kernel: the values that are tried, with what is believed of each (natural logarithm).
 struct Axis {
@@ -104,6 +104,9 @@ pub struct Discrepancy {
     used: Vec<usize>,
     /// Kernels with their shares.
     kernels: Vec<(f64, Factored)>,
+    /// All kinds of these, and those of the load.
+    distinct: Distinct,
+    of_load: Distinct,
     /// The stock that they show.
     allowance: Allowance,
 }
@@ -216,7 +219,9 @@ impl Discrepancy {
     fn by(points: Points, used: Vec<usize>, kernels: Vec<(f64, Factored)>) -> Self {
         let rows: Vec<&Row> = used.iter().map(|k| &points.rows[*k]).collect();
         let allowance = Allowance::of(&kernels, &rows, &points.extents);
-        Self { points, used, kernels, allowance }
+        let distinct = Distinct::of(kernels.iter().map(|(_, of)| of.kernel));
+        let of_load = Distinct::of(kernels.iter().map(|(_, of)| of.kernel.of_load()));
+        Self { points, used, kernels, distinct, of_load, allowance }
     }
 
     /// How probable the points are by its most probable kernel, machine and discrepancy left open: natural logarithm of a density per
@@ -248,28 +253,36 @@ impl Discrepancy {
 
     /// Expected discrepancy at a place of the next part, mm.
     pub fn at(&self, place: &Feature) -> f64 {
-        self.by_kernels(place, |kernel| *kernel)
+        self.by_kernels(place, &self.distinct)
     }
 
     /// The part of it that some kinds of every kernel make.
-    fn by_kernels(&self, place: &Feature, kinds: impl Fn(&Kernel) -> Kernel) -> f64 {
-        let of = |kernel: &Kernel| -> Vec<f64> {
-            self.rows().map(|row| row.lasting(kernel, &self.points.extents, place)).collect()
-        };
-        let mut known = Lasting::of(of);
-        self.mean_over(|factored| factored.mean(known.at(&kinds(&factored.kernel))))
+    fn by_kernels(&self, place: &Feature, kinds: &Distinct) -> f64 {
+        let mut rows: Vec<WithPlace<'_>> = self.rows().map(|row| row.with(&self.points.extents, place)).collect();
+        let mut lasting = |kernel| rows.iter_mut().map(|row| row.lasting(kernel)).collect::<Vec<f64>>();
+        let known: Vec<Vec<f64>> = kinds.kernels.iter().map(&mut lasting).collect();
+        self.mean_by(kinds, |factored, which| factored.mean(&known[which]))
+    }
+
+    /// Mean of a quantity over the kernels, which is asked for with the distinct one of each.
+    fn mean_by(&self, kinds: &Distinct, of: impl Fn(&Factored, usize) -> f64) -> f64 {
+        self.kernels.iter().zip(&kinds.which).map(|((share, kernel), which)| share * of(kernel, *which)).sum()
     }
 
     /// What is [beside the path with its stock](Self::rest_at) because the load differs, mm.
     fn by_load_at(&self, place: &Feature) -> f64 {
-        self.by_kernels(place, Kernel::of_load) - place.stock * self.more_stock(place.contour, place.s)
+        self.by_kernels(place, &self.of_load) - place.stock * self.more_stock(place.contour, place.s)
     }
 
     /// The share of the variance of a place that the load has, before any points, 0…1.
     fn share_of_load(&self, place: &Feature) -> f64 {
-        let mut variance = Lasting::of(|kernel: &Kernel| kernel.lasting(&self.points.extents, place, place));
-        let all = self.mean_over(|of| *variance.at(&of.kernel));
-        if all > 0.0 { self.mean_over(|of| *variance.at(&of.kernel.of_load())) / all } else { 0.0 }
+        let mut pair = Pair::of(&self.points.extents, place, place);
+        let mut variance = |kinds: &Distinct| {
+            let known: Vec<f64> = kinds.kernels.iter().map(|kernel| kernel.lasting_of(&mut pair)).collect();
+            self.mean_by(kinds, |_, which| known[which])
+        };
+        let all = variance(&self.distinct);
+        if all > 0.0 { variance(&self.of_load) / all } else { 0.0 }
     }
 
     /// The same with all stock among the discrepancy: none is expected of the path.
@@ -330,8 +343,8 @@ impl Discrepancy {
         let even = path.with_law(core.law);
         let mut buffer = Vec::new();
         let path = self.stocked(&even, contour, &mut buffer);
-        let (features, sensitivity): (Vec<Feature>, Vec<[f64; COUNT]>) =
-            looks(&path, contour, core).into_iter().unzip();
+        let nominal = Nominal::of(&path, core);
+        let features = looks(&nominal, &path, contour, core);
         let rest: Vec<Offset> = features.par_iter().map(|feature| nm(self.rest_at(feature))).collect();
         let (mean, rest, stock) = if self.allowance.is_even() {
             (rest, Vec::new(), Vec::new())
@@ -341,8 +354,11 @@ impl Discrepancy {
         };
         let stride = features.len().div_ceil(PLACES).max(1);
         let places: Vec<usize> = (0..features.len()).step_by(stride).chain(features.len().checked_sub(1)).collect();
-        let known: Vec<[f64; 2]> =
-            places.par_iter().map(|k| self.deviations(&features[*k], &sensitivity[*k], core)).collect();
+        let known: Vec<[f64; 2]> = places
+            .par_iter()
+            .zip(nominal.sensitivities(&places))
+            .map(|(k, sensitivity)| self.deviations(&features[*k], &sensitivity, core))
+            .collect();
         let deviation = |k: usize| {
             let (at, share) = (k / stride, (k % stride) as f64 / stride as f64);
             let [from, to] = [at, at + 1].map(|at| known.get(at).or(known.last()).copied().unwrap_or_default());
@@ -358,11 +374,12 @@ impl Discrepancy {
         Along { mean, rest, stock, sigma, repeat, by_load }
     }
 
-    /// How the places beside every sample of a contour look to the kernels, in the stock that is expected, and what the parameters do to
-    /// the wall there, mm per prior standard deviation.
-    pub(super) fn features(&self, path: &Path, contour: usize, core: &job::Identified) -> Vec<(Feature, [f64; COUNT])> {
+    /// How the places beside every sample of a contour look to the kernels, in the stock that is expected.
+    pub(super) fn features(&self, path: &Path, contour: usize, core: &job::Identified) -> Vec<Feature> {
         let even = path.with_law(core.law);
-        looks(&self.stocked(&even, contour, &mut Vec::new()), contour, core)
+        let mut buffer = Vec::new();
+        let path = self.stocked(&even, contour, &mut buffer);
+        looks(&Nominal::of(&path, core), &path, contour, core)
     }
 
     /// Standard deviations at a place of the next part, mm: of parameters and discrepancy together, without that which the
@@ -410,41 +427,39 @@ impl Discrepancy {
     }
 }
 
-/// What [`Kernel::lasting`] gives of a place: many kernels differ only in what is of no account there.
-struct Lasting<T, F> {
-    of: F,
-    known: Vec<(Kernel, T)>,
+/// The kernels of a discrepancy as [`Kernel::lasting`] sees them: many differ only in what is of no account there.
+#[derive(Clone, Debug)]
+struct Distinct {
+    kernels: Vec<Kernel>,
+    /// Which of them every kernel is.
+    which: Vec<usize>,
 }
 
-impl<T, F: Fn(&Kernel) -> T> Lasting<T, F> {
-    fn of(of: F) -> Self {
-        Self { of, known: Vec::new() }
-    }
-
-    fn at(&mut self, kernel: &Kernel) -> &T {
-        let kernel = kernel.of_one_part();
-        let at = self.known.iter().position(|(other, _)| *other == kernel).unwrap_or_else(|| {
-            self.known.push((kernel, (self.of)(&kernel)));
-            self.known.len() - 1
-        });
-        &self.known[at].1
+impl Distinct {
+    fn of(all: impl Iterator<Item = Kernel>) -> Self {
+        let mut kernels: Vec<Kernel> = Vec::new();
+        let mut which = Vec::new();
+        for kernel in all.map(|kernel| kernel.of_one_part()) {
+            which.push(kernels.iter().position(|other| *other == kernel).unwrap_or(kernels.len()));
+            if which.last() == Some(&kernels.len()) {
+                kernels.push(kernel);
+            }
+        }
+        Self { kernels, which }
     }
 }
 
-/// How the places beside every sample of a contour look to a kernel, where the correction leads the cutter to its nominal place, and
-/// what the parameters do to the wall there, mm per prior standard deviation.
-fn looks(path: &Path, contour: usize, core: &job::Identified) -> Vec<(Feature, [f64; COUNT])> {
-    let table = core.table();
-    let machine = core.machine(path, &table);
-    let engagement = Engagement::nominal(&machine, contour);
+/// How the places beside every sample of a contour look to a kernel, where the correction leads the cutter to its nominal place.
+fn looks(nominal: &Nominal<'_>, path: &Path, contour: usize, core: &job::Identified) -> Vec<Feature> {
+    let engagement = nominal.engagement(contour);
     let level = float(core.prior.sigma[0]).max(1e-9);
     let samples = &path.samples()[path.first()..path.first() + path.count()];
-    let by = sensitivities(path, core).into_iter().zip(stock_sensitivities(path, core));
+    let by = nominal.by_compliance().into_iter().zip(stock_sensitivities(path, core));
     samples
         .iter()
         .zip(by)
-        .map(|(sample, (row, stock))| {
-            (engagement.at(sample.s, sample.normal, Sensitivity { load: row[0] / level, stock }), row)
+        .map(|(sample, (compliance, stock))| {
+            engagement.at(sample.s, sample.normal, Sensitivity { load: compliance / level, stock })
         })
         .collect()
 }

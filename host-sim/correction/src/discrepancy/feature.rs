@@ -1,6 +1,6 @@
 //! A place as the kernel sees it.
 
-use truepath_core::cut::{Loop, Path, State};
+use truepath_core::cut::{Path, State};
 use truepath_core::geometry::Direction;
 use truepath_core::units::Offset;
 use truepath_ground::units::{float, mm};
@@ -41,21 +41,10 @@ pub struct Engagement<'p> {
 }
 
 impl<'p> Engagement<'p> {
-    /// That of the actual cutter positions of a run, from sample `from` on.
+    /// That of cutter positions, from sample `from` on: the actual ones of a run, or the nominal ones, where a correction that works leads
+    /// the cutter.
     pub fn of(path: &'p Path<'p>, contour: usize, from: usize, states: &[State]) -> Self {
         Self { path, contour, engaged: states.iter().map(|state| float(state.engaged)).collect(), from }
-    }
-
-    /// That of the nominal positions, where a correction that works leads the cutter.
-    pub fn nominal(machine: &'p Loop<'p>, contour: usize) -> Self {
-        let working = machine.path.working();
-        let from = working.start;
-        let state = |i: usize| {
-            let feed = machine.path.setup().feed_per_tooth(machine.path.samples()[i].feed);
-            machine.nominal(i, machine.coefficients.chip_scale(feed))
-        };
-        let states: Vec<State> = working.map(state).collect();
-        Self::of(machine.path, contour, from, &states)
     }
 
     /// A place with its normal and what the load does to it.

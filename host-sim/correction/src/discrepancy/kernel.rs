@@ -105,6 +105,67 @@ fn bell(square: f64) -> f64 {
     (-0.5 * square).exp()
 }
 
+/// Two places of one part, with the exponentials that kernels ask for: most ask for the same.
+#[derive(Clone, Debug)]
+pub(super) struct Pair<'p> {
+    a: &'p Feature,
+    b: &'p Feature,
+    /// The contour that both are on.
+    extent: Option<&'p Extent>,
+    cosine: f64,
+    way: f64,
+    /// Reaches with what is known of each; of the reaches that are tried there are no more.
+    materns: [Option<(f64, f64)>; 6],
+    local: Option<(f64, f64)>,
+    engaged_alike: Option<f64>,
+    within_drift: Option<f64>,
+}
+
+impl<'p> Pair<'p> {
+    /// Of two places.
+    pub(super) fn of(extents: &'p [Extent], a: &'p Feature, b: &'p Feature) -> Self {
+        let extent = extents.get(a.contour).filter(|_| a.contour == b.contour);
+        let way = extent.map_or(0.0, |extent| extent.way(a.s, b.s));
+        let cosine = a.normal[0] * b.normal[0] + a.normal[1] * b.normal[1];
+        Self { a, b, extent, cosine, way, materns: [None; 6], local: None, engaged_alike: None, within_drift: None }
+    }
+
+    fn apart(&self, k: usize) -> f64 {
+        ((self.a.engaged[k] - self.b.engaged[k]) / ALIKE).powi(2)
+    }
+
+    fn matern(&mut self, reach: f64) -> f64 {
+        for slot in &mut self.materns {
+            match slot {
+                Some((known, value)) if *known == reach => return *value,
+                Some(_) => (),
+                None => return slot.insert((reach, matern(self.way, reach))).1,
+            }
+        }
+        matern(self.way, reach)
+    }
+
+    fn near_and_alike(&mut self, reach: f64) -> f64 {
+        match self.local {
+            Some((known, value)) if known == reach => value,
+            _ => {
+                let value = bell((self.way / reach).powi(2)) * bell(self.apart(1));
+                self.local.insert((reach, value)).1
+            }
+        }
+    }
+
+    fn engaged_alike(&mut self) -> f64 {
+        let load = self.apart(0) + self.apart(1) + self.apart(2);
+        *self.engaged_alike.get_or_insert_with(|| bell(load))
+    }
+
+    /// `reach` is that of the contour.
+    fn within_drift(&mut self, reach: f64) -> f64 {
+        *self.within_drift.get_or_insert_with(|| matern((self.a.s - self.b.s).abs(), reach))
+    }
+}
+
 impl Kernel {
     /// Where the search for kernels begins: an even machine, uneven load, an unknown cause.
     pub(super) const STARTS: [Self; 4] = [
@@ -130,31 +191,31 @@ impl Kernel {
 
     /// Covariance of two places of one and the same part, as far as it repeats on the next, mm².
     pub(super) fn lasting(&self, extents: &[Extent], a: &Feature, b: &Feature) -> f64 {
-        let apart = |k: usize| ((a.engaged[k] - b.engaged[k]) / ALIKE).powi(2);
-        let cosine = a.normal[0] * b.normal[0] + a.normal[1] * b.normal[1];
+        self.lasting_of(&mut Pair::of(extents, a, b))
+    }
+
+    /// The same of a pair that several kernels are asked about.
+    pub(super) fn lasting_of(&self, pair: &mut Pair<'_>) -> f64 {
+        let Pair { a, b, cosine, .. } = *pair;
         let mut sum = 0.0;
         if self.keyed > 0.0 {
-            let load = apart(0) + apart(1) + apart(2);
-            sum += self.keyed.powi(2) * bell(load) * (0.5 + 0.5 * cosine * cosine);
+            sum += self.keyed.powi(2) * pair.engaged_alike() * (0.5 + 0.5 * cosine * cosine);
         }
-        let Some(extent) = extents.get(a.contour).filter(|_| a.contour == b.contour) else { return sum };
-        let way = extent.way(a.s, b.s);
+        let Some(extent) = pair.extent else { return sum };
         if self.stock > 0.0 {
             let size = (self.stock * extent.allowance).powi(2);
-            sum += size * (a.stock * b.stock) * matern(way, self.stock_reach * extent.radius);
+            sum += size * (a.stock * b.stock) * pair.matern(self.stock_reach * extent.radius);
         }
         if self.load > 0.0 {
-            sum += self.load.powi(2) * (a.load * b.load) * matern(way, YIELDS_OVER * extent.radius);
+            sum += self.load.powi(2) * (a.load * b.load) * pair.matern(YIELDS_OVER * extent.radius);
         }
         if self.local > 0.0 {
             let reach = self.local_reach * extent.radius;
-            let alike =
-                if self.local_reach < 1.0 { bell((way / reach).powi(2)) * bell(apart(1)) } else { matern(way, reach) };
+            let alike = if self.local_reach < 1.0 { pair.near_and_alike(reach) } else { pair.matern(reach) };
             sum += self.local.powi(2) * alike;
         }
         if self.drift > 0.0 {
-            let along = matern((a.s - b.s).abs(), DRIFTS_OVER * extent.length);
-            sum += self.drift.powi(2) * along * cosine;
+            sum += self.drift.powi(2) * pair.within_drift(DRIFTS_OVER * extent.length) * cosine;
         }
         sum
     }

@@ -36,7 +36,7 @@ impl Discrepancy {
     pub fn open(&self, path: &Path, contour: usize, core: &job::Identified) -> Open {
         let beside = self.features(path, contour, core);
         let stride = beside.len().div_ceil(PLACES).max(1);
-        let places: Vec<Feature> = beside.into_iter().map(|(feature, _)| feature).step_by(stride).collect();
+        let places: Vec<Feature> = beside.into_iter().step_by(stride).collect();
         let mut covariance = vec![vec![0.0; places.len()]; places.len()];
         let mut kernels: Vec<&(f64, Factored)> = self.kernels().iter().collect();
         kernels.sort_by(|a, b| b.0.total_cmp(&a.0));

@@ -8,7 +8,7 @@ use truepath_core::job;
 use truepath_ground::units::{float, mm, real};
 
 use super::feature::{Engagement, Feature, Sensitivity};
-use super::kernel::{Extent, Kernel};
+use super::kernel::{Extent, Kernel, Pair};
 use super::nominal::moved_stock;
 use super::pairs::Pairs;
 
@@ -72,9 +72,28 @@ pub(super) struct Row {
 impl Row {
     /// Covariance with a place, as far as it repeats on the next part, mm².
     pub(super) fn lasting(&self, kernel: &Kernel, extents: &[Extent], place: &Feature) -> f64 {
-        let here = kernel.lasting(extents, &self.feature, place);
-        let Some(across) = &self.across else { return here };
-        0.5 * (here + kernel.lasting(extents, across, place))
+        self.with(extents, place).lasting(kernel)
+    }
+
+    /// It with a place that several kernels are asked about.
+    pub(super) fn with<'p>(&'p self, extents: &'p [Extent], place: &'p Feature) -> WithPlace<'p> {
+        let pair = |own| Pair::of(extents, own, place);
+        WithPlace { here: pair(&self.feature), across: self.across.as_ref().map(pair) }
+    }
+}
+
+/// A row and a place.
+#[derive(Clone, Debug)]
+pub(super) struct WithPlace<'p> {
+    here: Pair<'p>,
+    across: Option<Pair<'p>>,
+}
+
+impl WithPlace<'_> {
+    /// As [`Row::lasting`].
+    pub(super) fn lasting(&mut self, kernel: &Kernel) -> f64 {
+        let here = kernel.lasting_of(&mut self.here);
+        self.across.as_mut().map_or(here, |across| 0.5 * (here + kernel.lasting_of(across)))
     }
 }
 

@@ -13,7 +13,7 @@ use rand_distr::{Distribution, StandardNormal};
 use truepath_core::cut::Path;
 use truepath_core::process::Slices;
 use truepath_core::units::Offset;
-use truepath_ground::rows::{add, add_all_scaled, add_scaled, largest};
+use truepath_ground::rows::{Weighable, add, add_scaled, largest};
 use truepath_ground::units::mm;
 
 use super::causes::Causes;
@@ -118,13 +118,13 @@ impl Uncertain {
         // The machines do not depend on each other, nor on what the model lacks; a seed keeps a prediction what it is.
         let mut random = ChaCha8Rng::seed_from_u64(19);
         let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
-        let columns: Vec<&Vec<f64>> = self.noise.iter().chain(&self.lacking).collect();
+        let columns = || self.noise.iter().chain(&self.lacking);
+        let changes = Weighable::of(columns().map(Vec::as_slice), self.base.len());
         let mut wall = self.base.clone();
         let mut draws = std::array::from_fn(|_| Draws(Vec::with_capacity(DRAWN)));
         for _ in 0..DRAWN {
             wall.clone_from(&self.base);
-            let weighed: Vec<(&[f64], f64)> = columns.iter().map(|column| (column.as_slice(), normal())).collect();
-            add_all_scaled(&mut wall, &weighed);
+            changes.add(&mut wall, &columns().map(|_| normal()).collect::<Vec<f64>>());
             if let Some(beside) = &self.beside {
                 beside.draw(self.heights, &mut wall, &mut normal);
             }

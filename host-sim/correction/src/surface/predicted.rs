@@ -3,12 +3,9 @@
 //! Limits: what the points leave open is linearised about the identified machine; of a long contour five hundred places are drawn, the
 //! worst of as many stretches. The ends of an open contour and sharp inside corners are not judged (see [`judged`]).
 
-use std::cell::RefCell;
-
 use rayon::prelude::*;
 use truepath_core::correct::{Band, HEIGHTS, Node, commanded};
-use truepath_core::cut::{Displacements, Envelope, ForceTable, Heights, Loop, State};
-use truepath_core::geometry::Vector;
+use truepath_core::cut::{ForceTable, Loop, State};
 use truepath_core::identify::{Fit, Parameter, Parameters, Prior, neighbours, prior_weights};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::rows::largest;
@@ -20,7 +17,7 @@ use super::unmodelled::{SOFTER, lack, unbent, unmodelled};
 use super::wall::{WallFigures, judged};
 use crate::correction::Identification;
 use crate::discrepancy::Along;
-use crate::parallel_walls::{displace, run};
+use crate::parallel_walls::{run, walls_at, walls_near};
 
 /// Places whose walls are drawn, at most.
 const DRAWN_PLACES: usize = 500;
@@ -35,8 +32,9 @@ impl Surface {
         let places: Vec<(usize, f64)> = judged(path).collect();
         let indices: Vec<usize> = places.iter().map(|(index, _)| *index).collect();
         let found = &known.fit().parameters;
-        let mut all = errors(machine, nodes, &indices);
-        let load = Load::of(machine, nodes, &all, &indices, found);
+        let known_states = states(machine, nodes);
+        let mut all = in_mm(walls_at(machine, &known_states, heights(), &indices));
+        let load = Load::of(machine, &known_states, &all, &indices, found);
         for ((column, per_load), index) in all.chunks_mut(COUNT).zip(load.over_mean()).zip(&indices) {
             let of = |residual: &[Offset]| residual.get(index - first).copied().map_or(0.0, mm);
             let (rest, by_load) = (of(&beside.mean), of(&beside.by_load.mean));
@@ -69,7 +67,7 @@ impl Surface {
             let other = other.machine(path, own.as_deref().unwrap_or(machine.table));
             // Some columns move nothing but the datum of the part that was probed.
             let moves = !other.cuts_as(machine);
-            let walls = moves.then(|| errors(&other, nodes, &drawn))?;
+            let walls = moves.then(|| in_mm(walls_near(&other, &known_states, heights(), &drawn)))?;
             Some((*origin, walls.iter().zip(&alone).map(|(wall, alone)| (wall - alone) * share).collect::<Vec<f64>>()))
         };
         let changes: Vec<_> = machines.par_iter().filter_map(cut).collect();
@@ -161,10 +159,10 @@ struct Load {
 const LEAST_MEAN: f64 = 0.3;
 
 impl Load {
-    fn of(machine: &Loop, nodes: &[Node], alone: &[f64], indices: &[usize], found: &Parameters) -> Self {
+    fn of(machine: &Loop, states: &[State], alone: &[f64], indices: &[usize], found: &Parameters) -> Self {
         let softer = unmodelled(found).nth(SOFTER).unwrap_or(*found).machine(machine.path, machine.table);
         let by = lack(Parameter::Compliance);
-        let walls = errors(&softer, nodes, indices);
+        let walls = in_mm(walls_near(&softer, states, heights(), indices));
         let per_load = walls.iter().zip(alone).map(|(wall, alone)| (wall - alone) / by).collect();
         Self { machine: alone.to_vec(), per_load }
     }
@@ -203,93 +201,27 @@ fn mean(column: &[f64]) -> f64 {
     column.iter().sum::<f64>() / column.len().max(1) as f64
 }
 
-/// Places that have so many samples each are few: of most samples nobody asks where the cutter is.
-const FEW: usize = 32;
-
 /// The wall errors that a machine leaves with a correction, empty for none, at samples of its path, mm: sample by sample, in each at
 /// [`COUNT`] even heights from the tip up; zero where no wall stands.
 pub fn errors(machine: &Loop, nodes: &[Node], places: &[usize]) -> Vec<f64> {
-    let path = machine.path;
-    let start = path.working().start;
-    let mut states = vec![State::REST; path.working().len()];
-    run(machine, start, &mut states, &|index| commanded(path, nodes, index));
-    if places.len() * FEW <= states.len() {
-        return errors_at_few(machine, &states, places);
-    }
-    let mut displacements: [Vec<Vector>; COUNT] = std::array::from_fn(|_| vec![Vector::ZERO; states.len()]);
-    displace(machine, &states, heights(), displacements.each_mut().map(Vec::as_mut_slice));
-    let row = |displacements: &Vec<Vector>| {
-        let envelope = Envelope::new(path, start, displacements);
-        // The wall beside a place is made about as far before or behind it as beside the place before.
-        let mut ahead = 0isize;
-        let beside = |index: &usize| {
-            let wall = envelope.error(*index, index.saturating_add_signed(ahead))?;
-            ahead = wall.made_by as isize - *index as isize;
-            Some(mm(wall.error + machine.undersize))
-        };
-        places.iter().map(beside).map(Option::unwrap_or_default).collect::<Vec<f64>>()
-    };
-    let rows: Vec<Vec<f64>> = displacements.par_iter().map(row).collect();
-    (0..places.len()).flat_map(|at| rows.iter().map(move |row| row[at])).collect()
+    in_mm(walls_at(machine, &states(machine, nodes), heights(), places))
 }
 
-/// The same from the states of a run, where only those samples are looked at that make one of the places.
-fn errors_at_few(machine: &Loop, states: &[State], places: &[usize]) -> Vec<f64> {
-    let (path, start) = (machine.path, machine.path.working().start);
-    let sought = RefCell::new(Sought {
-        machine,
-        states,
-        heights: Heights::new(heights()),
-        slots: vec![0; states.len()],
-        known: Vec::new(),
-    });
-    let mut envelopes: [_; COUNT] =
-        std::array::from_fn(|height| Envelope::of(path, start, AtHeight { of: &sought, height }));
-    let mut ahead = [0isize; COUNT];
-    let mut beside = |index: usize| {
-        let each = envelopes.iter_mut().zip(&mut ahead).map(|(envelope, ahead)| {
-            let wall = envelope.read(index, index.saturating_add_signed(*ahead))?;
-            *ahead = wall.made_by as isize - index as isize;
-            Some(mm(wall.error + machine.undersize))
-        });
-        each.map(Option::unwrap_or_default).collect::<Vec<f64>>()
-    };
-    places.iter().flat_map(|index| beside(*index)).collect()
+/// The states of a machine that cuts with a correction.
+fn states(machine: &Loop, nodes: &[Node]) -> Vec<State> {
+    let path = machine.path;
+    let mut states = vec![State::REST; path.working().len()];
+    run(machine, path.working().start, &mut states, &|index| commanded(path, nodes, index));
+    states
+}
+
+fn in_mm(walls: Vec<[Option<Offset>; COUNT]>) -> Vec<f64> {
+    walls.into_iter().flatten().map(|error| error.map_or(0.0, mm)).collect()
 }
 
 /// The heights of a place.
 fn heights() -> [Real; COUNT] {
     std::array::from_fn(|k| Band::WHOLE.at(k as i64))
-}
-
-/// Displacements at all heights of the samples that were asked for.
-struct Sought<'a> {
-    machine: &'a Loop<'a>,
-    states: &'a [State],
-    heights: Heights<COUNT>,
-    /// Where they are among the known ones, for every sample, counted from 1; 0 for nowhere.
-    slots: Vec<u32>,
-    known: Vec<[Vector; COUNT]>,
-}
-
-/// Those of one height.
-#[derive(Clone, Copy)]
-struct AtHeight<'a> {
-    of: &'a RefCell<Sought<'a>>,
-    height: usize,
-}
-
-impl Displacements for AtHeight<'_> {
-    fn displacement(&mut self, slot: usize) -> Option<Vector> {
-        let mut sought = self.of.borrow_mut();
-        let Sought { machine, states, heights, slots, known } = &mut *sought;
-        let at = slots.get_mut(slot)?;
-        if *at == 0 {
-            known.push(machine.at_heights(heights, states.get(slot)?));
-            *at = known.len() as u32;
-        }
-        known.get(*at as usize - 1)?.get(self.height).copied()
-    }
 }
 
 #[cfg(test)]

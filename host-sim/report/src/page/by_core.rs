@@ -5,6 +5,7 @@ use truepath_core::cut::{Loop, Path, Sample, State};
 use truepath_core::geometry::Vector;
 use truepath_core::units::Offset;
 use truepath_correction::correction::Correction;
+use truepath_correction::parallel_walls::run;
 use truepath_ground::units::{float, mm};
 
 use super::column::{FEED, FINE, FORCE, UNIT};
@@ -56,8 +57,8 @@ pub fn predicted(machine: &Loop, passes: &PredictedPasses) -> Along {
     let aim = |p: &Profile| if p.on_wall { mm(p.aim(correction.wanted.target, None)) } else { f64::NAN };
     let start = path.working().start;
     let mut states = vec![State::REST; path.working().len()];
-    let mut pass = |words: &Words, shift: &dyn Fn(usize) -> Vector, errors: Vec<f64>| {
-        machine.run(start, &mut states, shift);
+    let mut pass = |words: &Words, shift: &(dyn Fn(usize) -> Vector + Sync), errors: Vec<f64>| {
+        run(machine, start, &mut states, &shift);
         let columns = pass_columns(&words.label, path, &trace(machine, &states, &errors), &kept);
         let name = words.name.clone();
         (PassColumns { name, ..columns }, errors_at_heights(machine, &states, passes.residual, &kept))

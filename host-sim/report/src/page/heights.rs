@@ -1,8 +1,8 @@
 //! The wall error over the height, at nodes along the contour.
 
-use truepath_core::cut::{Envelope, Loop, Path, Sample, State};
-use truepath_core::geometry::Vector;
+use truepath_core::cut::{Loop, Path, Sample, State};
 use truepath_core::units::{Offset, Real};
+use truepath_correction::parallel_walls::walls_at;
 use truepath_ground::units::{float, mm, rounded};
 
 use super::column::FINE;
@@ -26,24 +26,15 @@ pub(super) fn fraction(k: usize) -> f64 {
 pub(super) fn errors_at_heights(machine: &Loop, states: &[State], residual: &[Offset], kept: &Kept) -> Vec<f64> {
     let path = machine.path;
     let contour = samples(path);
-    let mut errors = vec![f64::NAN; kept.nodes().count() * HEIGHTS];
-    let mut displacements = vec![Vector::ZERO; states.len()];
-    for row in 0..HEIGHTS {
-        let height = Real::ratio(row as i64, HEIGHTS as i64 - 1);
-        Envelope::displace(machine, states, height, &mut displacements);
-        let envelope = Envelope::new(path, path.working().start, &displacements);
-        // The wall beside a node is made about as far before or behind it as beside the node before.
-        let mut ahead = 0isize;
-        for (node, i) in kept.nodes().enumerate() {
-            let index = path.first() + i;
-            let guess = index.saturating_add_signed(ahead);
-            let Some(wall) = envelope.error(index, guess).filter(|_| contour[i].on_wall) else { continue };
-            ahead = wall.made_by as isize - index as isize;
-            let beside = residual.get(i).copied().unwrap_or_default();
-            errors[node * HEIGHTS + row] = mm(wall.error + machine.undersize + beside);
-        }
-    }
-    errors
+    let heights: [Real; HEIGHTS] = std::array::from_fn(|row| Real::ratio(row as i64, HEIGHTS as i64 - 1));
+    let standing: Vec<usize> = kept.nodes().filter(|i| contour[*i].on_wall).map(|i| path.first() + i).collect();
+    let mut walls = standing.iter().zip(walls_at(machine, states, heights, &standing)).peekable();
+    let each = |i: usize| {
+        let wall = walls.next_if(|(index, _)| **index == path.first() + i);
+        let beside = residual.get(i).copied().unwrap_or_default();
+        wall.map_or([None; HEIGHTS], |(_, wall)| wall).map(|error| error.map_or(f64::NAN, |error| mm(error + beside)))
+    };
+    kept.nodes().flat_map(each).collect()
 }
 
 /// Wall errors over the height of the passes of a page: before, milled, after.

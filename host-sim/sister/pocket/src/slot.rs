@@ -117,7 +117,8 @@ impl Slot {
 
     /// Mean force (normal, tangential), N.
     fn mean(&self, arcs: &[[f64; 2]], feed: f64) -> [f64; 2] {
-        let at = |angle: f64| self.table.mean(&self.setup, &self.coefficients, real(angle));
+        let helix = self.setup.helix();
+        let at = |angle: f64| self.table.mean((&self.setup, &helix), &self.coefficients, real(angle));
         self.total(arcs.iter().map(|[a, b]| minus(at(*b), at(*a))), feed)
     }
 
