@@ -8,7 +8,7 @@ const script = await build({
   bundle: true,
   minify: true,
   format: "iife",
-  target: "es2021",
+  target: "es2022",
   charset: "ascii",
   legalComments: "none",
   write: false,

@@ -320,7 +320,8 @@ fn design<'a>(
         }
         warnings.push(corners.text(pass.unit()));
     }
-    warnings.extend(feeds.warnings(mm(correction.sigma_by_points.iter().copied().max().unwrap_or_default())));
+    warnings
+        .extend(feeds.warnings(mm(correction.sigma_by_points.iter().copied().max().unwrap_or_default()), pass.unit()));
     let wall = |nodes| Surface::predicted(&machine, &identified, request.beside, nodes);
     let surface = Surfaces { before: wall(&[]), after: wall(&correction.nodes) };
     warnings.extend(beyond_tolerance(pass, &remarks, &surface.after));
@@ -400,7 +401,7 @@ impl Designed<'_> {
         let Self { pass, path, identified, correction, feeds, mut warnings, .. } = self;
         warnings.extend(levels.left);
         if self.part == MeasuredPart::Uncorrected {
-            warnings.extend(cut_corrected(&identified, &correction));
+            warnings.extend(cut_corrected(&identified, &correction, pass.unit()));
         }
         let summary = CorrectSummary {
             corrected_program: written.map(|_| corrected_name(pass.program.name())),

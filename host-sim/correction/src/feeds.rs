@@ -3,6 +3,7 @@
 use truepath_core::cut::Loop;
 use truepath_ground::codes::J008;
 use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::length::Unit;
 use truepath_ground::units::float;
 use truepath_job::feed::{FeedSummary, Schedule, Wanted, largest_force, schedule};
 use truepath_job::job::{ForceLimit, Route};
@@ -100,15 +101,17 @@ impl Feeds {
     }
 
     /// What the user should know of the feeds, given the standard deviation of the corrected wall at them, mm.
-    pub fn warnings(&self, sigma_mm: f64) -> Vec<String> {
+    pub fn warnings(&self, sigma_mm: f64, unit: Unit) -> Vec<String> {
         let Some(summary) = &self.summary else { return Vec::new() };
         let unused = self.schedule.is_none();
         let mut warnings: Vec<String> = summary.doubt().into_iter().collect();
         warnings.extend(unused.then(|| "[feed] changes nothing: the force is within the limit everywhere".to_owned()));
         if let Some(plain) = summary.unscheduled.filter(|plain| sigma_mm > 1.2 * plain.max_sigma_mm) {
             warnings.push(format!(
-                "at the scheduled feeds the corrected wall is less certain ({sigma_mm:.4} mm, {:.4} mm at those of the program, one sigma): the points were cut at one feed, and what edge and chip have in the force is not told apart; probe the part cut with these feeds, or raise feed.min_percent",
-                plain.max_sigma_mm
+                "at the scheduled feeds the corrected wall is less certain ({:.4} {name}, {:.4} {name} at those of the program, one sigma): the points were cut at one feed, and what edge and chip have in the force is not told apart; probe the part cut with these feeds, or raise feed.min_percent",
+                unit.of(sigma_mm),
+                unit.of(plain.max_sigma_mm),
+                name = unit.name()
             ));
         }
         warnings

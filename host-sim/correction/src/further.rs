@@ -88,7 +88,7 @@ pub fn next_part(
     let (Some(points), Some(nodes)) = (points, nodes) else { return Err(other_contour(&sampled).into()) };
     if let (true, Some((newest, earlier @ [_, ..]))) = (measurement.is_some(), points.split_last()) {
         let before = joint(pass, &sampled, earlier, &[], None, &mut |share| progress(0.2 * share));
-        refuse_uncorrected(&sampled, newest, &before)?;
+        refuse_uncorrected(&sampled, newest, &before, pass.unit())?;
     }
     let joint = joint(pass, &sampled, &points, &[], None, &mut |share| progress(0.2 + 0.3 * share));
     let observations: Vec<_> = joint.observations.into_iter().flatten().collect();

@@ -10,6 +10,7 @@
 use rayon::prelude::*;
 use truepath_core::cut::{Runout, WallLaw};
 use truepath_core::units::{Offset, Real};
+use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 use truepath_job::pass::Pass;
 
@@ -39,10 +40,11 @@ pub struct Found {
 
 impl Found {
     /// In words.
-    pub fn words(&self) -> String {
+    pub fn words(&self, unit: Unit) -> String {
         format!(
-            "the points speak for a cutter that runs out by about {:.3} mm ({}): measure it, and write runout_mm, half of what a dial indicator swings, in [tool]; the correction follows the points",
-            mm(self.offset),
+            "the points speak for a cutter that runs out by about {:.3} {} ({}): measure it, and write runout_mm, half of what a dial indicator swings, in [tool]; the correction follows the points",
+            unit.of(mm(self.offset)),
+            unit.name(),
             odds(self.ln_odds)
         )
     }
@@ -140,7 +142,9 @@ impl Tried {
 pub fn passes(walls: &[&Pass], groups: &[(&Pass, Vec<PartCut<'_>>)]) -> (Vec<Pass>, Vec<Fit>) {
     let mut fits = Vec::new();
     match found(groups, &mut fits) {
-        Some(found) => (walls.iter().map(|pass| pass.running_out(found.offset, found.words())).collect(), Vec::new()),
+        Some(found) => {
+            (walls.iter().map(|pass| pass.running_out(found.offset, found.words(pass.unit()))).collect(), Vec::new())
+        }
         None => (walls.iter().map(|pass| (*pass).clone()).collect(), fits),
     }
 }

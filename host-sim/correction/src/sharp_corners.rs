@@ -91,8 +91,9 @@ impl SharpCorners {
         );
         if let Some(WithArcs { corner_radius_mm, after_mm, .. }) = self.with_arcs {
             text += &format!(
-                "; if the drawing allows corners of {} {name}, truepath fillet JOB --corner-radius {corner_radius_mm} -o DIR puts arcs there, with which {:.3} {name} are predicted along the whole contour",
+                "; if the drawing allows corners of {} {name}, truepath fillet JOB --corner-radius {} -o DIR puts arcs there, with which {:.3} {name} are predicted along the whole contour",
                 unit.of(corner_radius_mm),
+                unit.typed(corner_radius_mm),
                 unit.of(after_mm)
             );
         }
@@ -104,7 +105,9 @@ impl SharpCorners {
 /// corners have no room for them.
 pub fn with_arcs(pass: &Pass, identified: &Identification) -> Option<WithArcs> {
     let cutter = mm(pass.core.setup.radius);
-    let radius = (cutter * SHARE * 10.0).ceil() / 10.0;
+    // Round in the unit of the drawing: up to a tenth of a millimetre, a hundredth of an inch.
+    let step = if pass.unit() == Unit::Inch { Unit::Inch.in_mm(0.01) } else { 0.1 };
+    let radius = rounded((cutter * SHARE / step).ceil() * step, 4);
     predicted(pass, identified, radius).ok().flatten()
 }
 

@@ -156,7 +156,7 @@ pub fn beyond_tolerance(pass: &Pass, remarks: &Remarks, after: &Surface) -> Opti
     let feature = pass.job.which.feature.as_ref().map_or_else(String::new, |id| format!(" --feature {id}"));
     let plan = |probe: &str| {
         let job = pass.job.source().name();
-        format!("truepath plan {job} --probe {probe} --tolerance {half}{feature}")
+        format!("truepath plan {job} --probe {probe} --tolerance {}{feature}", unit.typed(half))
     };
     let next = match remarks.part {
         MeasuredPart::Uncorrected => {
@@ -181,7 +181,7 @@ pub fn beyond_tolerance(pass: &Pass, remarks: &Remarks, after: &Surface) -> Opti
 }
 
 /// A correction that a part was cut with takes off nearly the same everywhere: the fit finds a cutter that is too large.
-pub fn cut_corrected(identified: &Identification, correction: &Correction) -> Option<String> {
+pub fn cut_corrected(identified: &Identification, correction: &Correction, unit: Unit) -> Option<String> {
     let peak = correction.predicted.iter().map(|p| p.before.mean.abs()).max().unwrap_or_default();
     let undersize = identified.fit().parameters.undersize;
     let is_far = Parameter::ALL
@@ -190,8 +190,9 @@ pub fn cut_corrected(identified: &Identification, correction: &Correction) -> Op
         .any(|(parameter, theta)| *parameter == Parameter::Undersize && truepath_ground::units::float(*theta) < -2.5);
     (is_far && undersize.nm() * -4 > peak.nm()).then(|| {
         format!(
-            "Q008: the points look like those of a part that was cut with a correction, as if the cutter were {:.3} mm larger in radius: if it was, do not use this correction, which would take the place of that one, but learn from the part with truepath learn --from its folder",
-            mm(-undersize)
+            "Q008: the points look like those of a part that was cut with a correction, as if the cutter were {:.3} {} larger in radius: if it was, do not use this correction, which would take the place of that one, but learn from the part with truepath learn --from its folder",
+            unit.of(mm(-undersize)),
+            unit.name()
         )
     })
 }

@@ -51,6 +51,25 @@ impl Decimal {
         Some(Self(if negative { -magnitude } else { magnitude }))
     }
 
+    /// A length in mm from its text, with or without a unit: `0.02`, `0.02mm`, `20um`, `0.0008in`, `0.0008"`. `None` for anything else.
+    pub fn length(text: &str) -> Option<Self> {
+        let inches = |n: Self| n.of_inches();
+        let micrometres = |n: Self| Self(div_rounded(n.0, 1000));
+        let units: [(&str, &dyn Fn(Self) -> Self); 6] = [
+            ("mm", &|n| n),
+            ("um", &micrometres),
+            ("µm", &micrometres),
+            ("inch", &inches),
+            ("in", &inches),
+            ("\"", &inches),
+        ];
+        let said = units.iter().find_map(|(unit, mm)| Some((text.strip_suffix(unit)?, mm)));
+        match said {
+            Some((number, mm)) => Self::parse(number.trim_end()).map(mm),
+            None => Self::parse(text),
+        }
+    }
+
     /// Of a length in inches that in millimetres, exactly as far as the resolution goes; beyond the range it is held at its end.
     pub fn of_inches(self) -> Self {
         Self(div_rounded(self.0.saturating_mul(254), 10).clamp(-LIMIT, LIMIT))
@@ -109,6 +128,26 @@ mod tests {
         assert_eq!(mm("0.5"), Decimal::parse("12.7").expect("a number"));
         assert_eq!(mm("-0.000_01").as_mm().nm(), -254);
         assert_eq!(mm("1e9"), Decimal::parse("1e9").expect("a number"));
+    }
+
+    #[test]
+    fn a_length_may_have_its_unit_behind_it() {
+        let nm = |text| Decimal::length(text).map(|length| length.as_mm().nm());
+        for (text, expected) in [
+            ("0.02", 20_000),
+            ("0.02mm", 20_000),
+            ("0.02 mm", 20_000),
+            ("20um", 20_000),
+            ("12.5 µm", 12_500),
+            ("0.0005in", 12_700),
+            ("-0.001 inch", -25_400),
+            ("0.5\"", 12_700_000),
+        ] {
+            assert_eq!(nm(text), Some(expected), "{text}");
+        }
+        for text in ["", "in", "mm", "0.5 ft", "5m", "0,5in", "0.5in mm"] {
+            assert_eq!(nm(text), None, "{text}");
+        }
     }
 
     #[test]

@@ -2,7 +2,10 @@
 
 use core::fmt;
 
+use serde::{Serialize, Serializer};
 use truepath_core::gcode::Units;
+
+use crate::decimal::Decimal;
 
 const MM_PER_INCH: f64 = 25.4;
 /// Decimals of an inch at least: a thousandth, of a small length a hundredth of that.
@@ -58,6 +61,13 @@ impl Unit {
     pub const fn small(self, mm: f64) -> Length {
         Length { mm, unit: self, micro: true }
     }
+    /// A length, given in mm, as a flag takes it: a plain number is in millimetres, inches have their unit behind them.
+    pub fn typed(self, mm: f64) -> String {
+        match self {
+            Self::Millimetre => mm.to_string(),
+            Self::Inch => format!("{}in", self.of(mm)),
+        }
+    }
     /// The number that is said for a length, given in mm.
     pub const fn said(self, mm: f64) -> f64 {
         match self {
@@ -72,6 +82,18 @@ impl Unit {
             Self::Inch => said * MM_PER_INCH,
         }
     }
+}
+
+/// The millimetres of a length on a command line, with or without its unit.
+///
+/// # Errors
+/// What is no such length, in words.
+pub fn flag(text: &str) -> Result<f64, String> {
+    // A plain number is what it always was, also one that no length can be: the command says what it may be.
+    let mm = text.parse().ok().or_else(|| Decimal::length(text).map(Decimal::as_f64));
+    mm.ok_or_else(|| {
+        "a length is a number of millimetres or has its unit behind it: 0.5, 0.5mm, 20um, 0.02in".to_owned()
+    })
 }
 
 /// A length that is written in its unit.
@@ -102,6 +124,40 @@ impl fmt::Display for Length {
     }
 }
 
+/// A text in both units. As JSON it is the text, or where the units differ in it a list: in millimetres, in inches.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Said {
+    mm: String,
+    inches: Option<String>,
+}
+
+impl Said {
+    /// What is said in a unit.
+    pub fn of(say: impl Fn(Unit) -> String) -> Self {
+        let [mm, inches] = [Unit::Millimetre, Unit::Inch].map(say);
+        Self { inches: (inches != mm).then_some(inches), mm }
+    }
+    /// The text in a unit.
+    pub fn in_unit(&self, unit: Unit) -> &str {
+        self.inches.as_deref().filter(|_| unit == Unit::Inch).unwrap_or(&self.mm)
+    }
+}
+
+impl<T: Into<String>> From<T> for Said {
+    fn from(text: T) -> Self {
+        Self { mm: text.into(), inches: None }
+    }
+}
+
+impl Serialize for Said {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match &self.inches {
+            None => self.mm.serialize(serializer),
+            Some(inches) => [&self.mm, inches].serialize(serializer),
+        }
+    }
+}
+
 /// Up to seven decimals, without noughts at the end.
 fn shortest(value: f64) -> String {
     let text = format!("{value:.7}");
@@ -110,7 +166,30 @@ fn shortest(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::Unit;
+    use super::{Said, Unit, flag};
+
+    #[test]
+    fn a_flag_is_in_millimetres_or_says_its_unit() {
+        let all = ["3", "-2.5", "20um", "0.5in", "1 mm"].map(|text| flag(text).ok());
+        assert_eq!(all, [3.0, -2.5, 0.02, 12.7, 1.0].map(Some));
+        let typed = [Unit::Millimetre, Unit::Inch].map(|unit| unit.typed(0.0127));
+        assert_eq!(typed, ["0.0127", "0.0005in"]);
+        assert_eq!(typed.map(|text| flag(&text).ok()), [Some(0.0127); 2]);
+        assert!(flag("5 feet").is_err_and(|said| said.contains("0.02in")));
+    }
+
+    #[test]
+    fn a_text_has_two_wordings_where_the_units_differ_in_it() {
+        let said = Said::of(|unit| format!("{:.3} {}", unit.of(0.0254), unit.name()));
+        assert_eq!(serde_json::to_string(&said).unwrap(), r#"["0.025 mm","0.0010 in"]"#);
+        assert_eq!([Unit::Millimetre, Unit::Inch].map(|unit| said.in_unit(unit)), ["0.025 mm", "0.0010 in"]);
+        let plain = Said::of(|_| "predicted".to_owned());
+        assert_eq!(
+            (serde_json::to_string(&plain).unwrap(), plain.clone()),
+            ("\"predicted\"".to_owned(), "predicted".into())
+        );
+        assert_eq!(plain.in_unit(Unit::Inch), "predicted");
+    }
 
     #[test]
     fn millimetres_are_written_as_numbers_are() {

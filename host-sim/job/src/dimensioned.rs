@@ -3,6 +3,7 @@
 use truepath_core::checksum::crc32;
 use truepath_core::units::Offset;
 use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::length::Unit;
 use truepath_ground::units::{mm, nm};
 
 use crate::dimension::{Axis, Dimension, Dimensions, Level, Placed, Walls, kept, placed, read};
@@ -29,7 +30,10 @@ impl Measurement {
         let mut measured = match probe {
             Some(probe) => Self::of_every(walls, probe)?,
             None => {
-                let at_depth = |pass| Ok((at_depth(pass, &dimensions)?, Self::of_nothing(file)));
+                let at_depth = |pass: Pass| {
+                    let unit = pass.unit();
+                    Ok((at_depth(pass, &dimensions)?, Self::of_nothing(file, unit)))
+                };
                 walls.into_iter().map(at_depth).collect::<Result<Vec<_>, Failure>>()?
             }
         };
@@ -74,13 +78,14 @@ impl Measurement {
     }
 
     /// No reading yet.
-    fn of_nothing(file: &Source) -> Self {
+    fn of_nothing(file: &Source, unit: Unit) -> Self {
         Self {
             contacts: Vec::new(),
             rejected: Vec::new(),
             readings: Vec::new(),
             numbered: Vec::new(),
             noise: Offset::ZERO,
+            unit,
             taken_as_is: false,
             source: file.clone(),
             crc: 0,

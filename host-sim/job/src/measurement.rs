@@ -9,6 +9,7 @@ use truepath_core::job::{self, ContourPass};
 use truepath_core::probe::{Contact, Outcome, Reading, Rejected};
 use truepath_core::units::{Offset, Position, Real};
 use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::length::Unit;
 use truepath_ground::units::{mm, nm};
 
 use crate::codes::M040;
@@ -47,6 +48,8 @@ pub struct Measurement {
     pub numbered: Vec<u32>,
     /// Standard deviation of one reading.
     pub noise: Offset,
+    /// The unit in which it is told of: that of the program.
+    pub unit: Unit,
     /// Whether the points are taken although they may not fit the job.
     pub taken_as_is: bool,
     /// The file; of a QIF document its points, each in its line.
@@ -106,6 +109,7 @@ impl Measurement {
             numbered: numbered(&readings),
             readings,
             noise: probe.noise,
+            unit: pass.unit(),
             taken_as_is: pass.job.force_data,
             source,
             crc,
@@ -216,7 +220,7 @@ impl Measurement {
     pub fn remarks(&self, file: &Source) -> Vec<String> {
         let aside = self.rejected.iter().map(|aside| {
             let number = self.number(aside.line);
-            format!("{}:{}: point {number} set aside: {}", file.name(), aside.line, why(&aside.reason))
+            format!("{}:{}: point {number} set aside: {}", file.name(), aside.line, why(&aside.reason, self.unit))
         });
         let placed = || self.dimensions.iter().flat_map(|dimensions| &dimensions.placed);
         let widths = placed().filter(|placed| placed.across.is_some() && placed.half.is_none()).count();

@@ -191,8 +191,9 @@ impl Pass {
             job::ContourPass::read(&job.numbers, program.bytes(), &mut memory.lend(), blocks)
         };
         let too_long = |e: &JobError| matches!(e, JobError::Program(e) if is_too_long(e));
-        let (mut blocks, core) = with_enough_blocks(read, too_long)
-            .map_err(|error| Inputs { job: &job, program: &program, probe: None }.refused(&error))?;
+        let (mut blocks, core) = with_enough_blocks(read, too_long).map_err(|error| {
+            Inputs { job: &job, program: &program, probe: None, unit: Unit::default() }.refused(&error)
+        })?;
         blocks.truncate(core.contour.blocks);
         let dialect = job.numbers.dialect;
         let warnings = core.contour.summary.warnings.as_slice().iter().filter(|w| !arms_truepath(w.kind, dialect));
@@ -482,8 +483,8 @@ impl Pass {
         self.inputs(Some(probe)).refused(error)
     }
 
-    const fn inputs<'a>(&'a self, probe: Option<&'a Source>) -> Inputs<'a> {
-        Inputs { job: &self.job, program: &self.program, probe }
+    fn inputs<'a>(&'a self, probe: Option<&'a Source>) -> Inputs<'a> {
+        Inputs { job: &self.job, program: &self.program, probe, unit: self.unit() }
     }
 
     /// The contour.

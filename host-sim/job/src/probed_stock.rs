@@ -11,6 +11,7 @@ use truepath_core::job::{self, ContourPass, JobError, REACH};
 use truepath_core::probe::{Contact, Contacts, CutWith, Outcome, Reading, Rejected, Setting, suspect};
 use truepath_core::units::{Offset, Position, Real};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::length::Unit;
 use truepath_ground::rows::median;
 use truepath_ground::units::mm;
 
@@ -93,7 +94,7 @@ pub(crate) struct TouchedPass<'a> {
 /// What is wrong with the file; `K004` for touches of the finished wall, `K005` for too few, `K006` for touches elsewhere.
 pub(crate) fn read(pass: &TouchedPass<'_>, file: &Source) -> Result<Option<ProbedStock>, Failure> {
     let Settled { probe, text, .. } = settled(pass.job, file)?;
-    let file = &text;
+    let (file, unit) = (&text, Unit::from(pass.core.contour.units));
     let mut core = pass.core.clone();
     core.job.probe = Some(probe);
     core.cut_with = CutWith::Anything;
@@ -114,7 +115,7 @@ pub(crate) fn read(pass: &TouchedPass<'_>, file: &Source) -> Result<Option<Probe
             Contacts::new(contour, Setting { reach: REACH, ..finished }),
             &readings,
             expected,
-            file,
+            (file, unit),
         )?;
     }
     let mut contacts: Vec<Contact> = readings.iter().filter_map(|r| on_stock.contact(r).ok()).collect();
@@ -126,11 +127,11 @@ pub(crate) fn read(pass: &TouchedPass<'_>, file: &Source) -> Result<Option<Probe
     let mut found: Vec<f64> = contacts.iter().map(|c| mm(expected + c.error)).collect();
     let median = median(&mut found);
     if let Some(first) = contacts.first().filter(|_| median < LEAST * mm(expected)) {
-        return Err(finished_wall(file, first.line, median, expected).into());
+        return Err(finished_wall((file, unit), first.line, median, expected).into());
     }
     let places = places(&contacts, expected, mm(probe.noise));
     let length_mm = mm(contour.length());
-    refuse_sparse(&places, &contour, &contacts, file)?;
+    refuse_sparse(&places, &contour, &contacts, (file, unit))?;
     let allowance = Allowance::new(places, (length_mm, contour.is_closed()), mm(expected));
     let allowance = allowance.ok_or_else(|| Failure::Internal("places without an allowance".to_owned()))?;
     let along: Vec<f64> = (0..=FIGURES).map(|k| length_mm * f64::from(k) / f64::from(FIGURES)).collect();
@@ -178,11 +179,14 @@ fn places(contacts: &[Contact], expected: Offset, noise_mm: f64) -> Vec<Place> {
     groups.iter().map(place).collect()
 }
 
-fn finished_wall(file: &Source, line: u32, found_mm: f64, expected: Offset) -> InputError {
+fn finished_wall((file, unit): (&Source, Unit), line: u32, found_mm: f64, expected: Offset) -> InputError {
+    let name = unit.name();
     let found = format!(
-        "the touches find {found_mm:.3} mm on the nominal wall: they are of the finished wall, not of the stock"
+        "the touches find {:.3} {name} on the nominal wall: they are of the finished wall, not of the stock",
+        unit.of(found_mm)
     );
-    let expected = format!("touches of the stock before the pass, about {} mm before the nominal wall", mm(expected));
+    let expected = unit.of(mm(expected));
+    let expected = format!("touches of the stock before the pass, about {expected} {name} before the nominal wall");
     K004.error(found, expected).at(file, line_span(file, line))
 }
 
@@ -192,7 +196,7 @@ fn refuse_strange(
     on_wall: Contacts<'_>,
     readings: &[Reading],
     expected: Offset,
-    file: &Source,
+    (file, unit): (&Source, Unit),
 ) -> Result<(), InputError> {
     let touched: Vec<&Reading> = readings.iter().filter(|r| r.outcome == Outcome::Touched).collect();
     let off = |reading: &Reading| {
@@ -203,28 +207,38 @@ fn refuse_strange(
     let mut errors: Vec<f64> = touched.iter().filter_map(|r| on_wall.contact(r).ok()).map(|c| mm(c.error)).collect();
     let median = median(&mut errors);
     if 2 * errors.len() > touched.len() && median < LEAST * mm(expected) {
-        return Err(finished_wall(file, first.line, median, expected));
+        return Err(finished_wall((file, unit), first.line, median, expected));
     }
     let (guess, help) = suspect(on_stock, readings).map_or_else(
         || (String::new(), K006.remedy),
         |suspicion| {
-            let (guess, help) = suspected(suspicion);
+            let (guess, help) = suspected(suspicion, unit);
             (format!("; {guess}"), help)
         },
     );
     let found = format!(
-        "most touches are farther than {:.3} mm from the expected stock, {} mm before the nominal wall{guess}",
-        mm(expected.scaled(WITHIN)),
-        mm(expected)
+        "most touches are farther than {:.3} {name} from the expected stock, {} {name} before the nominal wall{guess}",
+        unit.of(mm(expected.scaled(WITHIN))),
+        unit.of(mm(expected)),
+        name = unit.name()
     );
     let error = InputError::new(K006, found, "touches of the stock beside this contour", help);
     Err(error.at(file, line_span(file, first.line)))
 }
 
 /// Refuses places between which nothing is known of the stock.
-fn refuse_sparse(places: &[Place], contour: &Contour, contacts: &[Contact], file: &Source) -> Result<(), InputError> {
+fn refuse_sparse(
+    places: &[Place],
+    contour: &Contour,
+    contacts: &[Contact],
+    (file, unit): (&Source, Unit),
+) -> Result<(), InputError> {
     let length = mm(contour.length());
-    let expected = format!("at least {PLACES} places, no stretch without one longer than {:.1} mm", GAP * length);
+    let expected = format!(
+        "at least {PLACES} places, no stretch without one longer than {:.1} {}",
+        unit.of(GAP * length),
+        unit.name()
+    );
     let line = contacts.iter().map(|c| c.line).max().unwrap_or(1);
     if places.len() < PLACES {
         let found = format!("the stock was touched at {} places of the contour", places.len());
@@ -236,7 +250,8 @@ fn refuse_sparse(places: &[Place], contour: &Contour, contacts: &[Contact], file
     match between.chain(ends).find(|(from, to)| to - from > GAP * length) {
         None => Ok(()),
         Some((from, to)) => {
-            let found = format!("the stock was not touched between {from:.1} and {to:.1} mm along the contour");
+            let ([from, to], name) = ([from, to].map(|s| unit.of(s)), unit.name());
+            let found = format!("the stock was not touched between {from:.1} and {to:.1} {name} along the contour");
             Err(K005.error(found, expected).at(file, line_span(file, line)))
         }
     }

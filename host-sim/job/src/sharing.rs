@@ -86,6 +86,7 @@ impl Measurement {
                 readings: own.clone(),
                 numbered: numbered(&readings),
                 noise: probe.noise,
+                unit: pass.unit(),
                 taken_as_is: pass.job.force_data,
                 source: file.clone(),
                 crc,

@@ -7,7 +7,7 @@
 import type { Report } from "./data";
 import { card, el, svg } from "./dom";
 import { beside, face } from "./face";
-import { fixed, signed } from "./format";
+import { fixed, sayAsGiven, sayDeviation, sayError, stepDecimals, unitOf, withUnit } from "./format";
 import { limitDecimals, limitsOf, standing, type Limits, type Standing } from "./limits";
 import { widest } from "./letters";
 import { markPath } from "./marks";
@@ -47,8 +47,8 @@ export class Chart {
     const high = values.reduce((a, b) => Math.max(a, b));
     const room = 0.06 * Math.max(high - low, 1e-4);
     const { step, decimals } = stepping(high - low + 2 * room);
-    const written = [low - room, high + room].map((v) => fixed(Math.trunc(v / step) * step, decimals));
-    const bounds = limits ? [limits.upper, limits.lower].map((v) => signed(v, limitDecimals(limits))) : [];
+    const written = [low - room, high + room].map((v) => sayError(Math.trunc(v / step) * step, decimals));
+    const bounds = limits ? [limits.upper, limits.lower].map((v) => sayDeviation(v, limitDecimals(limits))) : [];
     // Wide letters get more room.
     const edge = { ...EDGE, left: Math.max(EDGE.left, widest(written) + 8), right: Math.max(EDGE.right, widest(bounds) + 8) };
     const along = points.map((p) => p.s_mm as number);
@@ -68,7 +68,7 @@ export class Chart {
       const where = standing(p, limits);
       picture.append(svg("path", { class: `mark ${where}`, d: markPath(where, x, y, 4) }));
     }
-    const axes = el("p", { class: "chart-axis" }, el("span", {}, "deviation, mm: material left is positive"), el("span", {}, "arc length s, mm"));
+    const axes = el("p", { class: "chart-axis" }, el("span", {}, `deviation, ${unitOf()}: material left is positive`), el("span", {}, `arc length s, ${unitOf()}`));
     this.box.replaceChildren(picture, beside(axes, edge), this.key(guard), ...face(this.report, width, edge, scale.px));
   }
 
@@ -85,9 +85,9 @@ export class Chart {
     const words: [Standing, string][] = [["within", "pass"], ["left", "fail: material left"], ["gouge", "fail: too deep"], ["open", "undecided"]];
     const entries = words.filter(([where]) => there.has(where)).map(([where, text]) => entry(svg("path", { class: `mark ${where}`, d: markPath(where, 8, 6, 4) }), text));
     const fill = (kind: string) => svg("rect", { class: kind, width: 16, height: 12 });
-    if (guard > 0) entries.push(entry(svg("path", { class: "bar-u", d: "M8 0V12" }), `± uncertainty, ${fixed(guard, limits ? limitDecimals(limits) : 4)} mm`));
+    if (guard > 0 && limits) entries.push(entry(svg("path", { class: "bar-u", d: "M8 0V12" }), `± uncertainty, ${withUnit(sayError(guard, limitDecimals(limits)))}`));
     if (guard > 0 && limits) entries.push(entry(fill("band"), "undecided: closer to a limit than the uncertainty"));
-    if (coverage?.stretches.length) entries.push(entry(fill("unmeasured"), `farther than ${coverage.reach_mm} mm from any measured place`));
+    if (coverage?.stretches.length) entries.push(entry(fill("unmeasured"), `farther than ${sayAsGiven(coverage.reach_mm)} from any measured place`));
     return el("p", { class: "chart-key" }, ...entries);
   }
 
@@ -101,7 +101,7 @@ export class Chart {
     for (const value of [limits.upper, limits.lower]) {
       if (guard > 0) picture.append(svg("rect", { class: "band", x: px(0), width: px(end) - px(0), y: py(value + guard), height: py(value - guard) - py(value + guard) }));
       picture.append(svg("path", { class: "limit", d: `M${px(0)} ${py(value)}H${px(end)}` }));
-      picture.append(svg("text", { class: "limit-text", x: px(end) + 5, y: py(value) + 4 }, signed(value, limitDecimals(limits))));
+      picture.append(svg("text", { class: "limit-text", x: px(end) + 5, y: py(value) + 4 }, sayDeviation(value, limitDecimals(limits))));
     }
   }
 
@@ -109,15 +109,14 @@ export class Chart {
     const { step, decimals } = stepping(high - low);
     for (let k = Math.ceil(low / step); k * step <= high; k++) {
       picture.append(svg("path", { class: k === 0 ? "nought" : "rule", d: `M${px(0)} ${py(k * step)}H${px(end)}` }));
-      picture.append(svg("text", { x: px(0) - 6, y: py(k * step) + 4, "text-anchor": "end" }, fixed(k * step, decimals)));
+      picture.append(svg("text", { x: px(0) - 6, y: py(k * step) + 4, "text-anchor": "end" }, sayError(k * step, decimals)));
     }
     const room = Math.max(90, 1.5 * widest([fixed(end, 0)]));
     const along = roundStep(end / Math.max(2, Math.min(Math.floor(width / 90), Math.floor((width - edge.left - edge.right) / room))));
     const bottom = HEIGHT - EDGE.bottom;
-    const places = Math.max(0, -Math.floor(Math.log10(along) + 1e-9));
     for (let k = 0; k * along <= end; k++) {
       picture.append(svg("path", { class: "tick", d: `M${px(k * along)} ${bottom}v4` }));
-      picture.append(svg("text", { x: px(k * along), y: bottom + 16, "text-anchor": "middle" }, fixed(k * along, places)));
+      picture.append(svg("text", { x: px(k * along), y: bottom + 16, "text-anchor": "middle" }, sayError(k * along, stepDecimals(along))));
     }
     picture.append(svg("path", { class: "tick", d: `M${px(0)} ${EDGE.top}V${bottom}H${px(end)}` }));
   }
@@ -126,5 +125,5 @@ export class Chart {
 /** Spacing of the lines over such a span, and the decimals of their numbers. */
 function stepping(span: number): { step: number; decimals: number } {
   const step = roundStep(span / 5);
-  return { step, decimals: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
+  return { step, decimals: stepDecimals(step) };
 }

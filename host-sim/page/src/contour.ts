@@ -5,7 +5,7 @@ import { fittingFactor, legend, sceneBar, transport, type Layer } from "./contro
 import { decode } from "./decode";
 import type { Report } from "./data";
 import { el } from "./dom";
-import { fixed, LENGTH } from "./format";
+import { sayError, unitOf, withUnit } from "./format";
 import { part, signature, statements } from "./inspection";
 import { limitsOf } from "./limits";
 import { Model, type PassName } from "./model";
@@ -31,6 +31,8 @@ export interface ContourView {
   /** Draws, once it is on the page. */
   begin(): void;
   recolour(): void;
+  /** Says in another unit what is drawn or follows the cutter. */
+  resay(): void;
   /** Ends the clock and all that looks after the window; then it can be taken off the page. */
   close(): void;
 }
@@ -63,7 +65,7 @@ function largest(values: ArrayLike<number> | undefined): number {
 
 function layersOf(report: Report, model: Model | null): Layer[] {
   const passes = model?.passes ?? [];
-  const errors: [string, string][] = [["left", "material left"], ["gouge", "cut too deep"]];
+  const errors: Layer["keys"] = [["left", "material left"], ["gouge", "cut too deep"]];
   if (limitsOf(report)) errors.push(["within", "within tolerance"]);
   const paths = passes.flatMap((pass): Layer["keys"] => (model && pass.across ? [[model.colour(pass), model.of("actual path", pass), pass.name]] : []));
   const corrected = passes.filter((pass) => pass.correction);
@@ -74,7 +76,7 @@ function layersOf(report: Report, model: Model | null): Layer[] {
     [{ id: "commanded", keys: commanded }, commanded.length],
     [{ id: "actual", keys: paths }, paths.length],
     [{ id: "stock", keys: [["stock", "stock"]] }, report.job?.stock?.allowance_mm ?? report.outlines?.stock],
-    [{ id: "points", keys: [["points", "probe point, normal, deviation mm"]] }, report.points?.length],
+    [{ id: "points", keys: [["points", () => `probe point, normal, deviation ${unitOf()}`]] }, report.points?.length],
     [{ id: "cutter", keys: [["cutter", "cutter, engaged arc"]] }, passes.length],
     [{ id: "force", keys: [["force", "force"]] }, passes.find((pass) => pass.series.fx_n)],
   ];
@@ -124,6 +126,11 @@ export function contourView(report: Report, among?: Among): ContourView {
     chart?.draw();
     unrolled?.draw(document.documentElement.dataset.printing === undefined ? undefined : PAPER);
     traces?.rebuild(store.state, colours, traceHeight());
+  };
+  const resay = () => {
+    unrolled?.rescale();
+    store.again("shown", "height", "place");
+    recolour();
   };
 
   const bar = sceneBar(model, store, {
@@ -224,7 +231,7 @@ export function contourView(report: Report, among?: Among): ContourView {
     traces?.close();
   };
   const nodes = [...figures, named, work, unrolled?.element ?? null, below, signed].filter((node) => node !== null);
-  return { nodes, stage, store, traces, several: passes.length > 1, begin, recolour, close };
+  return { nodes, stage, store, traces, several: passes.length > 1, begin, recolour, resay, close };
 }
 
 /** The passes that are to be seen: one, or both that are compared. */
@@ -247,7 +254,7 @@ function announce(model: Model, { place, shown }: State): void {
     const index = Math.round(place);
     const errors = model.passes.filter((pass) => seenPasses(model, shown).includes(pass.name)).flatMap((pass) => {
       const error = pass.series.error_mm;
-      return error ? [`${model.of("error", pass)} ${fixed(error.values[index], LENGTH)} mm`] : [];
+      return error ? [`${model.of("error", pass)} ${withUnit(sayError(error.values[index]))}`] : [];
     });
     return [placeText(model, index), ...errors].join("; ");
   });

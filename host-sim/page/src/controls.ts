@@ -1,7 +1,7 @@
 /** The bars: what is shown, how large, at which height; and the transport of the cutter. */
 
-import { el } from "./dom";
-import { fixed } from "./format";
+import { el, type Said } from "./dom";
+import { fixed, sayLength, withUnit } from "./format";
 import type { Model } from "./model";
 import type { Player } from "./player";
 import type { PassName } from "./model";
@@ -21,7 +21,7 @@ export function fittingFactor(largest: number, size: number): number {
 export interface SceneActions { zoomIn(): void; zoomOut(): void; whole(): void; fragment(): void }
 
 /** A layer with the signs that belong to it: class of the key, name, the pass it is of where it is not of all. */
-export interface Layer { id: string; keys: [string, string, PassName?][] }
+export interface Layer { id: string; keys: [string, Said, PassName?][] }
 
 export function sceneBar(model: Model | null, store: Store, actions: SceneActions): HTMLElement {
   const bar = el("div", { class: "bar", role: "group", "aria-label": "Picture" });
@@ -100,7 +100,7 @@ function heightSlider(z: number[], store: Store): HTMLElement {
   const output = el("output", { for: "height" });
   const show = () => {
     const { height } = store.state;
-    const text = height === null ? "mean" : `${fixed(z[height], 2)} mm`;
+    const text = height === null ? "mean" : withUnit(sayLength(z[height], 2));
     output.textContent = text;
     input.setAttribute("aria-valuetext", height === null ? "mean over the height" : `${text} above the tip`);
     input.value = String(height === null ? 0 : height + 1);
@@ -142,7 +142,7 @@ export function transport(model: Model, store: Store, player: Player, jumped: (i
     const index = Math.round(place);
     if (scrub.value !== String(index)) scrub.value = String(index);
     if (!playing) scrub.setAttribute("aria-valuetext", placeText(model, index));
-    at.textContent = `s ${fixed(model.s.values[index], 1)} mm · t ${fixed(player.timeOf(place), 2)} / ${fixed(end, 2)} s`;
+    at.textContent = `s ${withUnit(sayLength(model.s.values[index], 1))} · t ${fixed(player.timeOf(place), 2)} / ${fixed(end, 2)} s`;
   };
   store.onChange((changed) => { if (changed.has("place") || changed.has("playing")) show(); });
   show();

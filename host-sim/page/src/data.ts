@@ -71,7 +71,7 @@ export interface Heights {
 export interface ProbePoint {
   line?: number;
   status: "used" | "aside";
-  reason?: string;
+  reason?: Told;
   s_mm?: number;
   /** The touched place of the wall, compensated for the ball. */
   x_mm: number;
@@ -85,6 +85,9 @@ export interface ProbePoint {
   /** Judged by the program, with the uncertainty; otherwise the page compares with the tolerance. */
   verdict?: "pass" | "fail" | "open";
 }
+
+/** A sentence of the program; in millimetres and in inches where they differ. */
+export type Told = string | [string, string];
 
 /** What a part is called, for its customer. */
 export interface Part {
@@ -166,7 +169,7 @@ export interface Result {
   value: number;
   decimals: number;
   unit: string;
-  note?: string;
+  note?: Told;
 }
 
 /** A run of cutting moves of the program. */
@@ -180,7 +183,7 @@ export interface ProgramCut {
   length_mm: number;
   closed: boolean;
   /** Why it has its role. */
-  why: string;
+  why: Told;
   /** Shown here; given the same correction; left as it is; not the business of this command. */
   became: "shown" | "corrected" | "unchanged" | "elsewhere";
 }
@@ -190,7 +193,7 @@ export interface Program {
   name: string;
   crc32?: string;
   /** The cut that is shown, and why that one. */
-  shown?: string;
+  shown?: Told;
   why?: string;
   other_features?: string[];
   cuts?: ProgramCut[];
@@ -229,6 +232,8 @@ export interface Report {
   version: 1;
   kind: "simulate" | "correct" | "learn" | "inspect";
   title: string;
+  /** In which unit lengths are said until the reader chooses: of the program; without it millimetres. */
+  unit?: "in";
   /** Program of this page, such as "truepath 1.0.0". */
   by?: string;
   program?: Program;
@@ -240,7 +245,7 @@ export interface Report {
     cut?: { axial_depth_mm?: number; feed_mm_per_min?: number; spindle_rpm?: number };
     stock?: { allowance_mm?: number };
     /** Anything else worth a line. */
-    facts?: { name: string; value: string }[];
+    facts?: { name: string; value: Told }[];
   };
   contour?: ContourColumns;
   /** Finished wall and surface before this pass; otherwise from the contour, tool and allowance. */
@@ -253,16 +258,16 @@ export interface Report {
   /** What to do next: words up to the command, and the command. */
   next?: { what: string; command: string };
   /** How the wall comes out, in a sentence. */
-  told?: string;
+  told?: Told;
   results?: Result[];
   tolerance_mm?: number;
   /** In place of `tolerance_mm`, for limits that need not lie evenly. */
   limits?: GivenLimits;
-  verdict?: { state: "pass" | "fail" | "open"; text: string };
+  verdict?: { state: "pass" | "fail" | "open"; text: Told };
   /** What the verdict rests on and what it does not cover, in sentences. */
-  statements?: string[];
+  statements?: Told[];
   coverage?: Coverage;
   part?: Part;
   files?: InputFile[];
-  warnings?: string[];
+  warnings?: Told[];
 }

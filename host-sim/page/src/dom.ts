@@ -1,11 +1,24 @@
 /** Elements in one call. */
 
-type Child = Node | string | null | undefined;
+/** A text that holds a length is a function: its node says it again in another unit. */
+export type Said = string | (() => string);
+type Child = Node | Said | null | undefined;
+
+function text(said: Said): string | Node {
+  if (typeof said === "string") return said;
+  return Object.assign(document.createTextNode(said()), { said });
+}
+
+/** Says every length on the page anew. */
+export function sayAgain(): void {
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  for (let node; (node = walker.nextNode() as (Text & { said?: () => string }) | null);) if (node.said) node.data = node.said();
+}
 
 export function el<K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Record<string, string> = {}, ...children: Child[]): HTMLElementTagNameMap[K] {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  for (const child of children) if (child !== null && child !== undefined) element.append(child);
+  for (const child of children) if (child !== null && child !== undefined) element.append(child instanceof Node ? child : text(child));
   return element;
 }
 
@@ -15,7 +28,7 @@ export function card(id: string, title: string, ...children: Child[]): HTMLEleme
 }
 
 /** A table that scrolls within itself on a narrow screen; `text` are the columns of words. */
-export function table(name: string, heads: string[], rows: Child[][], text: number[] = [0]): HTMLElement {
+export function table(name: string, heads: Said[], rows: Child[][], text: number[] = [0]): HTMLElement {
   const kind = (i: number) => (text.includes(i) ? "text" : "number");
   const head = el("tr", {}, ...heads.map((title, i) => el("th", { scope: "col", class: kind(i) }, title)));
   const body = rows.map((row) => el("tr", {}, ...row.map((cell, i) => (

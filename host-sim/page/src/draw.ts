@@ -1,7 +1,7 @@
 /** The still layer of a scene: grid, part, stock, paths, error band, probe points. */
 
 import type { ProbePoint } from "./data";
-import { signed } from "./format";
+import { sayDeviation } from "./format";
 import { decimalsTelling, standing, type Limits } from "./limits";
 import { drawMark, fillOf } from "./marks";
 import type { Model, Pass } from "./model";
@@ -206,11 +206,11 @@ function points(c: Context, view: View, picture: Picture, colours: Palette): voi
     drawMark(c, where, x, y, 4);
   }
   const labels: Label[] = [];
-  const decimals = decimalsTelling(picture.points, picture.limits, 3);
+  const decimals = decimalsTelling(picture.points, picture.limits);
   c.font = `11px ${colours.font}`;
   for (const { point, wall } of seen.reverse()) {
     if (point.error_mm === undefined) continue;
-    const text = signed(point.error_mm, decimals);
+    const text = sayDeviation(point.error_mm, decimals);
     const wide = c.measureText(text).width;
     // Beside the stroke; where there is no room, farther out along it, then on the other side of the wall.
     for (let k = 0; k < (seen.length > CROWD ? 1 : FARTHER); k++) {

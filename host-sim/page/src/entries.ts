@@ -1,7 +1,7 @@
 /** The contours of a page of several: their names, where they lie, how they came out, and which is the worst. */
 
 import { checked, drawn } from "./contour";
-import { LENGTH } from "./format";
+import { fine } from "./format";
 import type { Outcome, Report, Several } from "./data";
 import { decimalsTelling, limitsOf } from "./limits";
 import { Path } from "./model";
@@ -28,22 +28,22 @@ type Size = "before_mm" | "measured_mm" | "after_mm" | "profile_mm" | "sigma_mm"
 export interface Figure { key: Size; head: string; name: string }
 
 const FIGURES: Record<Report["kind"], Figure[]> = {
-  simulate: [{ key: "before_mm", head: "largest error mm", name: "largest wall error" }],
+  simulate: [{ key: "before_mm", head: "largest error", name: "largest wall error" }],
   correct: [
-    { key: "before_mm", head: "before mm", name: "largest error without correction" },
-    { key: "after_mm", head: "after mm", name: "largest error with it" },
+    { key: "before_mm", head: "before", name: "largest error without correction" },
+    { key: "after_mm", head: "after", name: "largest error with it" },
   ],
   learn: [
-    { key: "before_mm", head: "uncorrected mm", name: "uncorrected, largest error" },
-    { key: "measured_mm", head: "measured mm", name: "measured part, largest error" },
-    { key: "after_mm", head: "next mm", name: "next part, largest error" },
+    { key: "before_mm", head: "uncorrected", name: "uncorrected, largest error" },
+    { key: "measured_mm", head: "measured", name: "measured part, largest error" },
+    { key: "after_mm", head: "next", name: "next part, largest error" },
   ],
-  inspect: [{ key: "measured_mm", head: "measured mm", name: "largest deviation" }],
+  inspect: [{ key: "measured_mm", head: "measured", name: "largest deviation" }],
 };
 const OTHERS: Figure[] = [
-  { key: "profile_mm", head: "any height mm", name: "worst at any height" },
-  { key: "sigma_mm", head: "σ mm", name: "standard deviation there" },
-  { key: "gouge_mm", head: "deepest cut mm", name: "deepest cut" },
+  { key: "profile_mm", head: "any height", name: "worst at any height" },
+  { key: "sigma_mm", head: "σ", name: "standard deviation there" },
+  { key: "gouge_mm", head: "deepest cut", name: "deepest cut" },
 ];
 
 /** The figures that some contour has; where the error at any height is known, the deepest cut is part of it. */
@@ -86,7 +86,7 @@ export function worstFirst(entries: Entry[], { key }: Figure): Entry[] {
 
 /** Decimals that tell every deviation from the limits it is held against. */
 export function decimalsOf(entries: Entry[]): number {
-  return Math.max(LENGTH, ...entries.filter(({ report }) => report.kind === "inspect").map(({ report }) => decimalsTelling(report.points ?? [], limitsOf(report), LENGTH)));
+  return Math.max(fine(), ...entries.filter(({ report }) => report.kind === "inspect").map(({ report }) => decimalsTelling(report.points ?? [], limitsOf(report))));
 }
 
 function lines(report: Report): Pick<Entry, "wall" | "path" | "closed"> {

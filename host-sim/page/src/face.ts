@@ -2,7 +2,7 @@
 
 import type { Report } from "./data";
 import { el, svg } from "./dom";
-import { fixed } from "./format";
+import { sayAsGiven, sayError, stepDecimals, unitOf } from "./format";
 import { limitsOf, standing } from "./limits";
 import { markPath } from "./marks";
 import { roundStep } from "./view";
@@ -34,10 +34,9 @@ export function face(report: Report, width: number, edge: { left: number; right:
       y: py(layer.to_mm), height: py(layer.from_mm) - py(layer.to_mm) }));
   }
   const step = roundStep(wall.depth_mm / 3);
-  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   for (let k = 0; k * step <= wall.depth_mm * (1 + 1e-9); k++) {
     picture.append(svg("path", { class: "rule", d: `M${edge.left} ${py(k * step)}H${width - edge.right}` }));
-    picture.append(svg("text", { x: edge.left - 6, y: py(k * step) + 4, "text-anchor": "end" }, fixed(k * step, decimals)));
+    picture.append(svg("text", { x: edge.left - 6, y: py(k * step) + 4, "text-anchor": "end" }, sayError(k * step, stepDecimals(step))));
   }
   picture.append(svg("path", { class: "tick", d: `M${edge.left} ${TOP}V${floor}H${width - edge.right}V${TOP}Z` }));
   const limits = limitsOf(report);
@@ -45,9 +44,9 @@ export function face(report: Report, width: number, edge: { left: number; right:
     const where = standing(p, limits);
     picture.append(svg("path", { class: `mark ${where}`, d: markPath(where, px(p.s_mm as number), py(p.z_mm as number), 4) }));
   }
-  const axis = beside(el("p", { class: "chart-axis" }, "height above the cutter's tip, mm, over the same arc length"), edge);
+  const axis = beside(el("p", { class: "chart-axis" }, `height above the cutter's tip, ${unitOf()}, over the same arc length`), edge);
   const key = svg("svg", { width: 16, height: 12, "aria-hidden": "true" });
   key.append(svg("rect", { class: "unmeasured", width: 16, height: 12 }));
-  const words = `farther than ${coverage.reach_mm} mm along the contour or ${wall.reach_mm} mm in height from every measured place`;
+  const words = `farther than ${sayAsGiven(coverage.reach_mm)} along the contour or ${sayAsGiven(wall.reach_mm)} in height from every measured place`;
   return [el("h3", {}, "Where the wall was touched"), picture, axis, ...(open.length ? [el("p", { class: "chart-key" }, el("span", {}, key, words))] : [])];
 }

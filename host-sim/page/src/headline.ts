@@ -1,16 +1,16 @@
 /** The verdict in one sentence, three figures, one next step. */
 
 import type { Report, Result, WallFigures } from "./data";
-import { el } from "./dom";
-import { fixed, LENGTH, sigmaText } from "./format";
+import { el, type Said } from "./dom";
+import { say, sayError, sigmaText, withUnit } from "./format";
 import { limitDecimals, limitsOf, limitsText, standing, type Limits } from "./limits";
 import type { Model, Pass } from "./model";
 import { holding, outside } from "./places";
 
 /** A figure as it is read: its name, its value with unit, a word on it. */
-export interface Told { name: string; value: string; note?: string }
+export interface Figure { name: string; value: Said; note?: Said }
 
-const mm = (value: number | undefined) => `${fixed(value, LENGTH)} mm`;
+const mm = (value: number | undefined) => withUnit(sayError(value));
 
 /** "97 %": whole percent, rounded so that nothing is promised that is not held. */
 export function percent(share: number): string {
@@ -34,8 +34,8 @@ function give(sigma: number | undefined): string {
 
 /** "0.135 → 0.009 ± 0.002 mm", or the one that is known. */
 function fall(before: number | undefined, after: number | undefined, sigma: number | undefined): string {
-  const [a, b] = [before, after].map((v) => (v === undefined ? "" : fixed(v, LENGTH)));
-  return `${[a, b].filter(Boolean).join(" → ")}${give(sigma)} mm`;
+  const [a, b] = [before, after].map((v) => (v === undefined ? "" : sayError(v)));
+  return withUnit([a, b].filter(Boolean).join(" → ") + give(sigma));
 }
 
 /** The sentence on top; undefined where nothing is known. */
@@ -48,7 +48,7 @@ export function sentence(report: Report, model: Model | null): string | undefine
     const judged = ofTolerance(report, model, now, next, limits);
     if (judged) return judged;
   }
-  if (!outlook) return told;
+  if (!outlook) return told && say(told);
   const { now: before, next: after, floor_mm: floor } = outlook;
   if (!after) {
     const worst = before.worst_mm === undefined ? "" : ` and ${mm(before.worst_mm)} at the worst height`;
@@ -79,7 +79,7 @@ function ofTolerance(report: Report, model: Model, now: Pass, next: Pass | undef
 function inspected(report: Report, limits: Limits | undefined): string | undefined {
   const { outlook, verdict, told } = report;
   const points = (report.points ?? []).filter((p) => p.status === "used" && p.error_mm !== undefined);
-  if (points.length === 0) return verdict?.text ?? told;
+  if (points.length === 0) return say(verdict?.text ?? told ?? "");
   const all = points.length === 1 ? "the one measured point" : `all ${points.length} measured points`;
   if (limits && verdict) {
     const of = (kinds: string[]) => points.filter((p) => kinds.includes(standing(p, limits)));
@@ -88,12 +88,13 @@ function inspected(report: Report, limits: Limits | undefined): string | undefin
     if (verdict.state === "fail") return `This wall is out of tolerance by ${mm(Math.max(by, 0.001))} at ${failed.length} of ${points.length} measured points.`;
     if (verdict.state === "pass") return `This wall is within tolerance at ${all}.`;
     if (undecided.length > 0) return `Not decided: ${undecided.length} of ${points.length} measured points lie closer to a limit than the uncertainty.`;
-    return `Not decided: ${verdict.text.replace(/^\w+: /, "")}${verdict.text.endsWith(".") ? "" : "."}`;
+    const text = say(verdict.text);
+    return `Not decided: ${text.replace(/^\w+: /, "")}${text.endsWith(".") ? "" : "."}`;
   }
-  if (!outlook) return told;
+  if (!outlook) return told && say(told);
   const { now } = outlook;
   const sigmas = now.worst_sigma_mm === undefined ? "" : " (2 sigma)";
-  return `At ${points.length} measured points this wall is off by up to ${fixed(now.worst_mm, LENGTH)}${give(now.worst_sigma_mm)} mm${sigmas}; the largest mean over the touched heights of a place is ${mm(now.mean_mm)}.`;
+  return `At ${points.length} measured points this wall is off by up to ${fall(now.worst_mm, undefined, now.worst_sigma_mm)}${sigmas}; the largest mean over the touched heights of a place is ${mm(now.mean_mm)}.`;
 }
 
 function capital(text: string): string {
@@ -101,33 +102,33 @@ function capital(text: string): string {
 }
 
 /** The three figures: worst at any height, mean over the height, and what they are held against. */
-export function three(report: Report, model: Model | null, rest: Result[], told: (r: Result) => Told): Told[] {
+export function three(report: Report, model: Model | null, rest: Result[], told: (r: Result) => Figure): Figure[] {
   const { outlook } = report;
   const limits = limitsOf(report);
-  const against: Told[] = limits ? [held(report, model, limits)] : [];
+  const against: Figure[] = limits ? [held(report, model, limits)] : [];
   if (!outlook) return [...against, ...rest.map(told)].slice(0, 3);
   const { now, next, floor_mm: floor } = outlook;
   const shown = next ?? now;
   const inspects = report.kind === "inspect";
-  const figure = (name: string, key: "worst_mm" | "mean_mm", sigma: keyof WallFigures): Told[] => (shown[key] === undefined ? [] : [{
-    name, value: `${fixed(shown[key], LENGTH)}${give(shown[sigma])} mm`,
-    note: [next && now[key] !== undefined ? `${mm(now[key])} before` : "", shown[sigma] === undefined ? "" : "2 sigma"].filter(Boolean).join("; "),
+  const figure = (name: string, key: "worst_mm" | "mean_mm", sigma: keyof WallFigures): Figure[] => (shown[key] === undefined ? [] : [{
+    name, value: () => fall(shown[key], undefined, shown[sigma]),
+    note: () => [next && now[key] !== undefined ? `${mm(now[key])} before` : "", shown[sigma] === undefined ? "" : "2 sigma"].filter(Boolean).join("; "),
   }]);
   const figures = [
     ...figure(inspects ? "worst at a touched height" : "worst at any height", "worst_mm", "worst_sigma_mm"),
     ...figure("mean over the height", "mean_mm", "mean_sigma_mm"),
     ...against,
-    ...(!limits && floor !== undefined ? [{ name: "floor", value: mm(floor), note: "1 sigma; to which machine and probe repeat" }] : []),
+    ...(!limits && floor !== undefined ? [{ name: "floor", value: () => mm(floor), note: "1 sigma; to which machine and probe repeat" }] : []),
   ];
   return [...figures, ...rest.map(told)].slice(0, 3);
 }
 
-function held(report: Report, model: Model | null, limits: Limits): Told {
+function held(report: Report, model: Model | null, limits: Limits): Figure {
   const next = report.kind === "inspect" ? undefined : model?.compared[1];
   const share = model && next ? holding(model, next, limits) : undefined;
-  const notes = [limits.uncertainty === undefined ? "" : `uncertainty ±${fixed(limits.uncertainty, limitDecimals(limits))} mm, k = 2`,
-    report.limits?.from ?? "", share === undefined ? "" : `held with ${percent(share)}`].filter(Boolean);
-  return { name: "tolerance", value: limitsText(limits), note: notes.join("; ") };
+  const notes = () => [limits.uncertainty === undefined ? "" : `uncertainty ±${withUnit(sayError(limits.uncertainty, limitDecimals(limits)))}, k = 2`,
+    report.limits?.from ?? "", share === undefined ? "" : `held with ${percent(share)}`].filter(Boolean).join("; ");
+  return { name: "tolerance", value: () => limitsText(limits), note: notes };
 }
 
 /** What to do next. */

@@ -2,6 +2,7 @@
 
 import type { Report } from "./data";
 import { card, el } from "./dom";
+import { say } from "./format";
 
 export function part(report: Report): HTMLElement | null {
   const { name, drawing, serial, material_batch: batch, customer, date } = report.part ?? {};
@@ -18,7 +19,7 @@ export function part(report: Report): HTMLElement | null {
 export function statements(report: Report): HTMLElement | null {
   const list = report.statements ?? [];
   if (list.length === 0) return null;
-  return card("statements", "What the verdict rests on", el("ul", {}, ...list.map((text) => el("li", {}, text))));
+  return card("statements", "What the verdict rests on", el("ul", {}, ...list.map((text) => el("li", {}, () => say(text)))));
 }
 
 /** Lines to write on; on paper only. */

@@ -1,7 +1,7 @@
 /** Limits of the wall error, and where a deviation lies among them. */
 
 import type { ProbePoint, Report } from "./data";
-import { fixed, LENGTH, signed } from "./format";
+import { fine, LENGTH, per, sayDeviation, sayError, withUnit } from "./format";
 
 export interface Limits { lower: number; upper: number; uncertainty: number | undefined }
 
@@ -14,32 +14,31 @@ export function limitsOf(report: Report): Limits | undefined {
   return half === undefined ? undefined : { lower: -half, upper: half, uncertainty: undefined };
 }
 
-/** Decimals of a length at most. */
-const MOST = 5;
+/** The fewest decimals that hold, up to a hundredth of a micrometre. */
+function fewest(decimals: number, holds: (decimals: number) => boolean): number {
+  return decimals >= fine(5) || holds(decimals) ? decimals : fewest(decimals + 1, holds);
+}
 
-/** Decimals that tell limits and uncertainty with all of their digits: a micrometre, or up to two more. */
+/** Decimals that tell limits and uncertainty with all of their digits: a micrometre, a tenth of a thousandth, or more. */
 export function limitDecimals({ lower, upper, uncertainty = 0 }: Limits): number {
-  const exact = (decimals: number) => [lower, upper, uncertainty].every((v) => Math.abs(v - Number(v.toFixed(decimals))) < 1e-9);
-  return [LENGTH, LENGTH + 1].find(exact) ?? MOST;
+  const all = [lower, upper, uncertainty].map((v) => v / per());
+  return fewest(per() > 1 ? 4 : LENGTH, (decimals) => all.every((v) => Math.abs(v - Number(v.toFixed(decimals))) < 1e-9));
 }
 
 export function limitsText(limits: Limits): string {
   const { lower, upper } = limits;
   const decimals = limitDecimals(limits);
-  return lower === -upper ? `±${fixed(upper, decimals)} mm` : `${signed(lower, decimals)} … ${signed(upper, decimals)} mm`;
+  return withUnit(lower === -upper ? `±${sayError(upper, decimals)}` : `${sayDeviation(lower, decimals)} … ${sayDeviation(upper, decimals)}`);
 }
 
-/** As many decimals as it takes, so that no deviation is rounded to the other side of a limit: `least`, or up to a hundredth of a micrometre. */
-export function decimalsTelling(points: ProbePoint[], limits: Limits | undefined, least: number): number {
-  if (!limits) return least;
+/** As many decimals as it takes, so that no deviation is rounded to the other side of a limit. */
+export function decimalsTelling(points: ProbePoint[], limits: Limits | undefined): number {
+  if (!limits) return fine();
   const nm = (mm: number) => Math.round(mm * 1e6);
   const [lower, upper, guard] = [nm(limits.lower), nm(limits.upper), nm(limits.uncertainty ?? 0)];
   const side = (e: number) => (e > upper + guard || e < lower - guard ? 2 : e <= upper - guard && e >= lower + guard ? 0 : 1);
   const errors = points.flatMap((p) => (p.error_mm === undefined ? [] : [p.error_mm]));
-  const holds = (decimals: number) => errors.every((e) => side(nm(e)) === side(nm(Number(e.toFixed(decimals)))));
-  let decimals = least;
-  while (decimals < MOST && !holds(decimals)) decimals++;
-  return decimals;
+  return fewest(fine(), (decimals) => errors.every((e) => side(nm(e)) === side(nm(Number((e / per()).toFixed(decimals)) * per()))));
 }
 
 export function standing(point: ProbePoint, limits: Limits | undefined): Standing {

@@ -4,6 +4,7 @@ import { checked, contourView } from "./contour";
 import type { Report } from "./data";
 import { readReport } from "./decode";
 import { el } from "./dom";
+import { sayInches } from "./format";
 import { palette } from "./palette";
 import { head, sourceOf, warnings } from "./panels";
 import { printing } from "./printing";
@@ -16,6 +17,7 @@ function start(): void {
   try {
     const report = readReport(document.getElementById("truepath-data"));
     document.title = `${report.title} – Truepath`;
+    sayInches(("contours" in report ? report.contours[0].page : report).unit === "in");
     if ("contours" in report) showSeveral(report, top, main);
     else showOne(checked(report), top, main);
   } catch (problem) {
@@ -27,7 +29,7 @@ function start(): void {
 
 function showOne(report: Report, top: HTMLElement, main: HTMLElement): void {
   const view = contourView(report);
-  top.append(...head(report, sourceOf(report), warnings(report.warnings ?? []), tools(view.recolour)));
+  top.append(...head(report, sourceOf(report), warnings(report.warnings ?? []), tools(view.recolour, view.resay)));
   main.append(...view.nodes);
   view.begin();
   printing(report, view);

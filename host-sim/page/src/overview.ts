@@ -1,7 +1,6 @@
 /** All contours of the part in one picture at true scale; a click, a tap or a key chooses one. */
 
 import { el, svg } from "./dom";
-import { fixed } from "./format";
 import { worstFirst, type Entry, type Figure } from "./entries";
 import { widest } from "./letters";
 import { boxOf, type Line } from "./outline";
@@ -39,7 +38,7 @@ export class Overview {
   private readonly seen = new ResizeObserver(() => { if (!document.documentElement.dataset.printing) this.draw(); });
 
   /** `choose` is called with a contour that was clicked or stepped to. */
-  constructor(private readonly entries: Entry[], private figure: Figure, private readonly decimals: number,
+  constructor(private readonly entries: Entry[], private figure: Figure, private readonly read: (size: number | undefined) => string,
     private readonly href: (entry: Entry) => string, private readonly choose: (entry: Entry, stepped: boolean) => void,
     private readonly hovered: (entry: Entry | null) => void) {
     this.view = new View(boxOf(entries.flatMap(({ wall, path }) => [...wall, ...path]), 0));
@@ -103,7 +102,7 @@ export class Overview {
     const size = entry.outcome[this.figure.key];
     const share = this.worst > 0 ? Math.max(0, size ?? 0) / this.worst : 0;
     const wide = 1.25 + 2.75 * share;
-    const value = size === undefined ? "" : `, ${this.figure.name} ${fixed(size, this.decimals)} mm`;
+    const value = size === undefined ? "" : `, ${this.figure.name} ${this.read(size)}`;
     const link = svg("a", { href: this.href(entry), "aria-label": `${entry.name}${value}` });
     const d = walls.map(outlined).join("");
     const ways = entry.path.map(place);
@@ -174,7 +173,7 @@ export class Overview {
       shade.append(stop);
     }
     bar.append(shade, svg("path", { d: "M0 4.4V5.6L72 8V2Z", fill: "url(#shade)" }));
-    this.key.replaceChildren(el("span", {}, `colour and weight: ${this.figure.name},`), el("span", {}, "0", bar, `${fixed(this.worst, this.decimals)} mm`));
+    this.key.replaceChildren(el("span", {}, `colour and weight: ${this.figure.name},`), el("span", {}, "0", bar, this.read(this.worst)));
   }
 
   private place(event: MouseEvent): Corner {
@@ -218,7 +217,7 @@ export class Overview {
     const { lines } = entry.outcome;
     const size = entry.outcome[this.figure.key];
     const told: [string, string][] = [["contour", entry.name], ...(lines ? [["lines", `${lines[0]}–${lines[1]}`] as [string, string]] : []),
-      ...(size === undefined ? [] : [[this.figure.name, `${fixed(size, this.decimals)} mm`] as [string, string]])];
+      ...(size === undefined ? [] : [[this.figure.name, this.read(size)] as [string, string]])];
     this.flag.replaceChildren(...told.flatMap(([name, value]) => [el("span", {}, name), el("b", {}, value)]));
     this.flag.classList.add("shown");
     const { offsetWidth: wide, offsetHeight: high } = this.flag;

@@ -59,10 +59,9 @@ export function onPaper(): () => void {
 export function printing(report: Report, { stage, store, traces, recolour, several }: ContourView): void {
   const root = document.documentElement;
   document.head.append(sheets(report));
-  let kept: { back: () => void; shown: Shown; range: [number, number] | null; cx: number; cy: number; scale: number } | null = null;
+  let kept: { back: () => void; shown: Shown; range: [number, number] | null; view: () => void } | null = null;
   window.addEventListener("beforeprint", () => {
-    const { cx, cy, scale } = stage.view;
-    kept = { back: onPaper(), shown: store.state.shown, range: store.state.range, cx, cy, scale };
+    kept = { back: onPaper(), shown: store.state.shown, range: store.state.range, view: stage.view.remember() };
     store.set({ playing: false, range: null, ...(several ? { shown: "both" } : {}) });
     stage.view.fit();
     root.style.setProperty("--paper-stage", `${pictureHeight(stage)}px`);
@@ -78,7 +77,7 @@ export function printing(report: Report, { stage, store, traces, recolour, sever
     root.style.removeProperty("--paper-stage");
     store.set({ shown: kept.shown, range: kept.range });
     stage.layout();
-    Object.assign(stage.view, { cx: kept.cx, cy: kept.cy, scale: kept.scale });
+    kept.view();
     recolour();
     kept = null;
   });

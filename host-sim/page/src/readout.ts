@@ -1,7 +1,8 @@
 /** The figures at one sample of the contour: the table beside the scene and the flag at the pointer. */
 
 import { el } from "./dom";
-import { decimalsOf, fixed, LENGTH, NO_VALUE, sigmaText, signed } from "./format";
+import { decimalsOf, fixed, NO_VALUE, per, sayDeviation, sayLength, sigmaText, signed, unitOf, withUnit } from "./format";
+import type { Series } from "./decode";
 import type { Model, Pass, PassName, Quantity } from "./model";
 
 const ROWS: [Quantity, string, string][] = [
@@ -10,10 +11,13 @@ const ROWS: [Quantity, string, string][] = [
   ["dy_mm", "deflection y", "mm"], ["feed_mm_per_min", "feed", "mm/min"],
 ];
 
-function row(quantity: Quantity, values: (number | undefined)[], decimals: number): string[] {
-  if (quantity === "sigma_mm") return values.map((value) => sigmaText(value));
-  const write = quantity === "force_n" || quantity.startsWith("arc") || quantity.startsWith("chip") || quantity.startsWith("feed") ? fixed : signed;
-  return values.map((value) => write(value, decimalsOf(quantity, decimals)));
+/** What has no sign. */
+const SIZES = /^(arc|chip|force|feed)/;
+
+function said(quantity: Quantity, { values, decimals }: Series, index: number): string {
+  if (quantity === "sigma_mm") return sigmaText(values[index]);
+  const [, , unit] = ROWS.find(([name]) => name === quantity) as (typeof ROWS)[0];
+  return (SIZES.test(quantity) ? fixed : signed)(values[index] / per(unit), decimalsOf(unit, decimals));
 }
 
 export class Readout {
@@ -31,8 +35,8 @@ export class Readout {
     const add = (key: Quantity | "cx" | "cy", title: string, unit: string, count: number) => {
       const cells = Array.from({ length: count }, () => el("td", { class: "number" }));
       if (count < passes.length) cells[0].colSpan = passes.length;
-      body.append(el("tr", {}, el("th", { scope: "row", class: "text" }, title, narrow ? el("span", { class: "unit" }, ` ${unit}`) : null), ...cells,
-        narrow ? null : el("td", { class: "text unit" }, unit)));
+      body.append(el("tr", {}, el("th", { scope: "row", class: "text" }, title, narrow ? el("span", { class: "unit" }, () => ` ${unitOf(unit)}`) : null), ...cells,
+        narrow ? null : el("td", { class: "text unit" }, () => unitOf(unit))));
       this.cells.push([key, cells]);
     };
     for (const [quantity, title, unit] of ROWS) {
@@ -76,33 +80,33 @@ export class Readout {
         cells.forEach((cell, k) => {
           const correction = cells.length > 1 ? model.passes[k].correction : model.correction;
           const series = key === "cx" ? correction?.x : correction?.y;
-          cell.textContent = signed(series?.values[index], LENGTH);
+          cell.textContent = sayDeviation(series?.values[index]);
         });
         continue;
       }
       model.passes.forEach((pass, k) => {
         const series = pass.series[key];
-        cells[k].textContent = series ? row(key, [series.values[index]], series.decimals)[0] : NO_VALUE;
+        cells[k].textContent = series ? said(key, series, index) : NO_VALUE;
       });
     }
   }
 }
 
 export function placeText(model: Model, index: number): string {
-  return `s ${fixed(model.s.values[index], LENGTH)} mm, X ${fixed(model.x.values[index], LENGTH)} mm, Y ${fixed(model.y.values[index], LENGTH)} mm`;
+  return ([["s", model.s], ["X", model.x], ["Y", model.y]] as const).map(([name, { values }]) => `${name} ${withUnit(sayLength(values[index]))}`).join(", ");
 }
 
 /** Lines of the flag, of the passes shown: name, value with unit. */
 export function flagLines(model: Model, shown: Pass[], index: number, height: number | null): [string, string][] {
   const lines: [string, string][] = [
-    ["s", `${fixed(model.s.values[index], LENGTH)} mm`],
-    ["X, Y", `${fixed(model.x.values[index], LENGTH)}, ${fixed(model.y.values[index], LENGTH)} mm`],
+    ["s", withUnit(sayLength(model.s.values[index]))],
+    ["X, Y", withUnit(`${sayLength(model.x.values[index])}, ${sayLength(model.y.values[index])}`)],
   ];
   for (const pass of shown) {
     const error = model.error(pass.name, height);
-    if (error) lines.push([model.of("error", pass), Number.isNaN(error[index]) ? NO_VALUE : `${signed(error[index], LENGTH)} mm`]);
+    if (error) lines.push([model.of("error", pass), Number.isNaN(error[index]) ? NO_VALUE : withUnit(sayDeviation(error[index]))]);
     const { sigma_mm: sigma, force_n: force, arc_deg: arc } = pass.series;
-    if (sigma) lines.push(["± σ", `${sigmaText(sigma.values[index])} mm`]);
+    if (sigma) lines.push(["± σ", withUnit(sigmaText(sigma.values[index]))]);
     if (force) lines.push([model.of("force", pass), `${fixed(force.values[index], 1)} N`]);
     if (arc && pass === shown[0]) lines.push(["arc", `${fixed(arc.values[index], 1)}°`]);
   }
@@ -112,7 +116,7 @@ export function flagLines(model: Model, shown: Pass[], index: number, height: nu
   for (const [name, correction] of corrections) {
     if (!correction) continue;
     const { x, y } = correction;
-    lines.push([name, `${signed(x.values[index], LENGTH)}, ${signed(y.values[index], LENGTH)} mm`]);
+    lines.push([name, withUnit(`${sayDeviation(x.values[index])}, ${sayDeviation(y.values[index])}`)]);
   }
   return lines;
 }

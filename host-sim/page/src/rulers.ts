@@ -1,5 +1,6 @@
 /** What lengths are read from: the grid, its numbers over everything that is filled, the bar of the error. */
 
+import { fixed, per, sayError, stepDecimals, unitOf, withUnit } from "./format";
 import type { Palette } from "./palette";
 import { roundBelow, roundStep, type View } from "./view";
 
@@ -37,7 +38,6 @@ export function gridLines(c: Context, view: View, colours: Palette): void {
 /** Numbers of the grid; a rim in the colour of the ground keeps them readable on whatever they lie. */
 export function gridNumbers(c: Context, view: View, colours: Palette): void {
   const { step, x, y } = gridOf(view);
-  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   c.font = `11px ${colours.font}`;
   c.fillStyle = colours.quiet;
   c.strokeStyle = colours.ground;
@@ -47,9 +47,9 @@ export function gridNumbers(c: Context, view: View, colours: Palette): void {
     c.strokeText(text, px, py);
     c.fillText(text, px, py);
   };
-  const name = "X mm";
+  const name = `X ${unitOf()}`;
   const right = view.width - 5 - c.measureText(name).width;
-  const number = (v: number) => v.toFixed(decimals).replace(/^-(?=0(\.0*)?$)/, "").replace("-", "−");
+  const number = (v: number) => sayError(v, stepDecimals(step));
   c.textBaseline = "bottom";
   for (let k = x[0]; k <= x[1]; k++) {
     const px = view.px(k * step);
@@ -62,13 +62,13 @@ export function gridNumbers(c: Context, view: View, colours: Palette): void {
   }
   write(name, right, view.height - 2);
   c.textBaseline = "top";
-  write("Y mm", 3, 3);
+  write(`Y ${unitOf()}`, 3, 3);
 }
 
 /** A round length as it is spoken of: micrometres below a hundredth of a millimetre. */
 export function lengthText(mm: number): string {
-  const [size, unit] = mm < 0.0099 ? [mm * 1000, "µm"] : [mm, "mm"];
-  return `${size.toFixed(Math.max(0, -Math.floor(Math.log10(size) + 1e-9)))} ${unit}`;
+  if (mm < 0.0099 && per() === 1) return `${fixed(mm * 1000, stepDecimals(mm * 1000))} µm`;
+  return withUnit(sayError(mm, stepDecimals(mm)));
 }
 
 /** How large an error is drawn: a bar of a round length. */

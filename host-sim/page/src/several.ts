@@ -1,15 +1,15 @@
 /** Several contours of one program: an overview of all, and the one that is chosen with everything there is to see of it. */
 
 import { contourView, tell, type ContourView } from "./contour";
-import type { Report, Several } from "./data";
+import type { Report, Several, Told } from "./data";
 import { el, table } from "./dom";
 import { decimalsOf, entriesOf, figuresOf, ranking, worstFirst, type Entry, type Figure } from "./entries";
-import { fixed, NO_VALUE } from "./format";
+import { NO_VALUE, say, sayError, sayLength, withUnit } from "./format";
 import { part, signature } from "./inspection";
 import { limitsOf, limitsText } from "./limits";
 import { Overview, stepped } from "./overview";
 import { nextStep, ofSeveral } from "./headline";
-import { figure, figures, head, sourceOf, warnings } from "./panels";
+import { figure, figures, head, inUnit, sourceOf, warnings } from "./panels";
 import { onPaper, sheets } from "./printing";
 import { tools } from "./theme";
 
@@ -26,7 +26,7 @@ export function showSeveral(data: Several, top: HTMLElement, main: HTMLElement):
 class Contours {
   private readonly entries: Entry[];
   private readonly columns: Figure[];
-  private readonly decimals: number;
+  private decimals: number;
   private readonly overview: Overview;
   private readonly list = el("div", { class: "list" });
   private readonly section = el("section", { class: "contour", id: "contour" });
@@ -43,10 +43,10 @@ class Contours {
     this.rank = ranking(data, this.entries);
     this.ranked = worstFirst(this.entries, this.rank);
     this.decimals = decimalsOf(this.entries);
-    this.overview = new Overview(this.entries, this.rank, this.decimals, hrefOf, (entry, step) => this.go(entry, step), (entry) => this.point(entry));
+    this.overview = new Overview(this.entries, this.rank, (size) => this.read(size), hrefOf, (entry, step) => this.go(entry, step), (entry) => this.point(entry));
     const shared = { ...this.entries[0].report, ...data } as Report;
     const [program, crc] = sourceOf(shared);
-    top.append(...head(data, [program, crc, `${this.entries.length} contours`], warnings(this.warned()), tools(() => this.view?.recolour())));
+    top.append(...head(data, [program, crc, `${this.entries.length} contours`], warnings(this.warned()), tools(() => this.view?.recolour(), () => this.resay())));
     document.head.append(sheets(shared));
     const card = el("section", { class: "card overview", "aria-labelledby": "overview-title" },
       el("div", { class: "overview-head" }, el("h2", { id: "overview-title" }, `Contours of the part: ${this.entries.length}`), ...this.orders()),
@@ -60,6 +60,17 @@ class Contours {
     if (this.named()) this.section.scrollIntoView();
     window.addEventListener("hashchange", () => this.follow());
     this.paper();
+  }
+
+  private read(size: number | undefined, unit = (text: string) => withUnit(text)): string {
+    return unit(sayError(size, this.decimals));
+  }
+
+  private resay(): void {
+    this.decimals = decimalsOf(this.entries);
+    this.overview.rank(this.rank);
+    this.rows();
+    this.view?.resay();
   }
 
   /** The contour that the address names. */
@@ -88,7 +99,7 @@ class Contours {
     this.chosen = entry;
     this.show();
     const size = this.size(entry);
-    tell(() => [entry.name, size === undefined ? "" : `${this.rank.name} ${fixed(size, this.decimals)} mm`].filter(Boolean).join(", "));
+    tell(() => [entry.name, size === undefined ? "" : `${this.rank.name} ${this.read(size)}`].filter(Boolean).join(", "));
   }
 
   /** Scrolls to the contour where it is not to be seen. */
@@ -121,15 +132,15 @@ class Contours {
   /** Name and place of a contour; on the screen with its warnings and with buttons to its neighbours. On paper the head has all warnings. */
   private title({ index, name, outcome, report }: Entry, buttons: boolean): HTMLElement {
     const { lines, z_mm: z } = outcome;
-    const place = [lines ? linesText(lines) : "", z === undefined ? "" : `Z ${fixed(z, 3)} mm`].filter(Boolean).join(" · ");
-    const said = [`${index + 1} of ${this.entries.length}`, report.program?.shown ?? (place || undefined), report.kind === "learn" ? report.title : undefined].filter((v) => v !== undefined);
+    const said = () => [`${index + 1} of ${this.entries.length}`, ...(report.program?.shown ? [say(report.program.shown)] : [lines ? linesText(lines) : "", z === undefined ? "" : `Z ${withUnit(sayLength(z))}`]),
+      report.kind === "learn" ? report.title : ""].filter(Boolean).join(" · ");
     const to = (title: string, text: string, by: number) => {
       const button = el("button", { type: "button", "aria-label": title, title }, text);
       button.addEventListener("click", () => this.go(this.entries[(index + by + this.entries.length) % this.entries.length], true));
       return button;
     };
     return el("div", { class: "contour-head" },
-      el("div", { class: "title" }, el("h2", {}, name), el("p", { class: "source" }, said.join(" · "))),
+      el("div", { class: "title" }, el("h2", {}, name), el("p", { class: "source" }, said)),
       buttons && report.warnings?.length ? warnings(report.warnings) : null,
       buttons ? el("div", { class: "buttons" }, to("The contour before", "‹", -1), to("The next contour", "›", 1)) : null);
   }
@@ -139,19 +150,20 @@ class Contours {
     const entries = this.columns.map(({ key, name }) => {
       const size = ({ outcome }: Entry) => outcome[key] ?? -1;
       const worst = this.entries.reduce((a, b) => (size(b) > size(a) ? b : a));
-      return figure(name, `${fixed(worst.outcome[key], this.decimals)} mm`, size(worst) > 0 ? this.link(worst) : undefined);
+      return figure(name, () => this.read(worst.outcome[key]), size(worst) > 0 ? this.link(worst) : undefined);
     });
     const lengths = this.entries.map(({ outcome }) => outcome.length_mm);
-    const all = lengths.every((v) => v !== undefined) ? `${fixed(lengths.reduce((a, b) => a + b, 0), 1)} mm long together` : "";
+    const all = lengths.every((v) => v !== undefined) ? () => `${withUnit(sayLength(lengths.reduce((a, b) => a + b, 0), 1))} long together` : "";
     entries.unshift(figure("contours", String(this.entries.length), all));
     const tolerances = new Set(this.entries.map(({ report }) => { const limits = limitsOf(report); return limits ? limitsText(limits) : ""; }));
     const [tolerance] = tolerances;
-    if (tolerances.size === 1 && tolerance) entries.unshift(figure("tolerance", tolerance));
+    const limits = limitsOf(this.entries[0].report);
+    if (tolerances.size === 1 && tolerance && limits) entries.unshift(figure("tolerance", () => limitsText(limits)));
     // What the contours are ranked by, then what it is held against or how many they are.
     const ranked = entries[entries.length - this.columns.length + this.columns.indexOf(this.rank)];
     const shown = [...new Set([ranked, ...entries])].slice(0, 3);
     return figures({
-      told: ofSeveral(this.entries), verdict: this.verdict(), entries: shown, next: nextStep(this.entries[0].report),
+      told: ofSeveral(this.entries) && (() => ofSeveral(this.entries) ?? ""), verdict: this.verdict(), entries: shown, next: nextStep(this.entries[0].report),
       rest: entries.filter((entry) => !shown.includes(entry)), name: "The worst of all contours",
     });
   }
@@ -171,12 +183,18 @@ class Contours {
   }
 
   /** Every warning once, with the contours it is of. */
-  private warned(): string[] {
-    const by = new Map<string, string[]>();
+  private warned(): Told[] {
+    const by = new Map<string, { told: Told; names: Set<string> }>();
     for (const { name, report } of this.entries) {
-      for (const text of new Set(report.warnings ?? [])) by.set(text, [...(by.get(text) ?? []), name]);
+      for (const told of report.warnings ?? []) {
+        const key = String(told);
+        by.set(key, { told, names: (by.get(key)?.names ?? new Set<string>()).add(name) });
+      }
     }
-    return [...by].map(([text, names]) => `${names.length === this.entries.length ? "all contours" : names.join(", ")}: ${text}`);
+    return [...by.values()].map(({ told, names }) => {
+      const whose = (text: string) => `${names.size === this.entries.length ? "all contours" : [...names].join(", ")}: ${text}`;
+      return typeof told === "string" ? whose(told) : [whose(told[0]), whose(told[1])];
+    });
   }
 
   private link(entry: Entry): HTMLElement {
@@ -217,15 +235,15 @@ class Contours {
   private rows(): void {
     const judged = this.entries.some(({ report }) => report.verdict);
     const [worst] = this.ranked;
-    const heads = ["contour", ...this.columns.map(({ head }) => head), ...(judged ? ["verdict"] : []), "lines", "Z mm", "length mm", "warnings"];
+    const heads = ["contour", ...this.columns.map(({ head }) => inUnit(head)), ...(judged ? ["verdict"] : []), "lines", inUnit("Z"), inUnit("length"), "warnings"];
     const rows = this.sorted.map((entry) => {
       const { outcome, report, index } = entry;
       const { state } = report.verdict ?? {};
       const name = el("span", { class: "name" }, el("span", { class: "count" }, String(index + 1)),
         el("span", {}, this.link(entry), entry === worst && (this.size(worst) ?? 0) > 0 ? el("strong", { class: "worst" }, "worst") : null));
-      return [name, ...this.columns.map(({ key }) => fixed(outcome[key], this.decimals)),
+      return [name, ...this.columns.map(({ key }) => this.read(outcome[key], String)),
         ...(judged ? [state ? el("span", { class: `state ${state}` }, WORDS[state]) : NO_VALUE] : []),
-        outcome.lines ? `${outcome.lines[0]}–${outcome.lines[1]}` : NO_VALUE, fixed(outcome.z_mm, 3), fixed(outcome.length_mm, 1), String(report.warnings?.length ?? 0)];
+        outcome.lines ? `${outcome.lines[0]}–${outcome.lines[1]}` : NO_VALUE, sayLength(outcome.z_mm), sayLength(outcome.length_mm, 1), String(report.warnings?.length ?? 0)];
     });
     const words = [0, ...(judged ? [this.columns.length + 1] : [])];
     const box = table("Contours of the part", heads, rows, words);

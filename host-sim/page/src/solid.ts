@@ -2,7 +2,7 @@
 
 import { Frame, type Body } from "./body";
 import type { ProbePoint } from "./data";
-import { fixed } from "./format";
+import { fixed, sayError, stepDecimals, withUnit } from "./format";
 import type { Limits } from "./limits";
 import type { Model } from "./model";
 import { Orbit, type Vector } from "./orbit";
@@ -137,7 +137,7 @@ export class Solid {
     c.lineTo(right, y - 4);
     c.stroke();
     c.textAlign = "right";
-    c.fillText(`${fixed(length, Math.max(0, -Math.floor(Math.log10(length) + 1e-9)))} mm`, right, y - 10);
+    c.fillText(withUnit(sayError(length, stepDecimals(length))), right, y - 10);
     c.textAlign = "left";
   }
 

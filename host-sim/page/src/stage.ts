@@ -4,7 +4,7 @@ import { between } from "./cutter";
 import type { ProbePoint, Report } from "./data";
 import { el } from "./dom";
 import type { Picture } from "./draw";
-import { fixed, LENGTH, signed } from "./format";
+import { fixed, sayDeviation, sayLength, withUnit } from "./format";
 import { decimalsTelling, limitsOf, verdictWord, type Limits } from "./limits";
 import type { Model, Pass, PassName } from "./model";
 import { nearestSample } from "./nearest";
@@ -168,7 +168,7 @@ export class Stage {
   private caption(name: PassName): string {
     const { magnify, height } = this.store.state;
     const pass = this.model?.pass(name);
-    const z = height === null ? "" : `, ${fixed(this.report.heights?.z_mm[height], 2)} mm above the tip`;
+    const z = height === null ? "" : `, ${withUnit(sayLength(this.report.heights?.z_mm[height], 2))} above the tip`;
     return `${pass ? this.model?.called(pass) : "wall and probe points"}${z}; errors ${magnify}\u00a0×`;
   }
 
@@ -198,10 +198,10 @@ export class Stage {
       const p = this.points[point];
       this.hoverAt(null);
       this.show(scene, px, py, [
-        ["probe point", String(p.line ?? point + 1)], ["deviation", `${signed(p.error_mm, decimalsTelling(this.points, this.limits, LENGTH))} mm`],
-        ["X, Y", `${fixed(p.x_mm, LENGTH)}, ${fixed(p.y_mm, LENGTH)} mm`], ["normal", `${fixed(p.nx, 3)}, ${fixed(p.ny, 3)}`],
+        ["probe point", String(p.line ?? point + 1)], ["deviation", withUnit(sayDeviation(p.error_mm, decimalsTelling(this.points, this.limits)))],
+        ["X, Y", withUnit(`${sayLength(p.x_mm)}, ${sayLength(p.y_mm)}`)], ["normal", `${fixed(p.nx, 3)}, ${fixed(p.ny, 3)}`],
         ...(p.verdict ? [["verdict", verdictWord(p, this.limits)] as [string, string]] : []),
-        ...(p.z_mm === undefined ? [] : [["height", `${fixed(p.z_mm, 2)} mm`] as [string, string]]),
+        ...(p.z_mm === undefined ? [] : [["height", withUnit(sayLength(p.z_mm, 2))] as [string, string]]),
         ["status", statusOf(p)],
       ]);
       return;

@@ -40,6 +40,11 @@ export class Store {
     }
     if (changed.size === 0) return;
     Object.assign(this.state, change);
-    for (const listener of this.listeners) listener(changed);
+    this.again(...changed);
+  }
+
+  /** Has everything that follows these made anew. */
+  again(...keys: (keyof State)[]): void {
+    for (const listener of this.listeners) listener(new Set(keys));
   }
 }

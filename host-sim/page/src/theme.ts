@@ -1,6 +1,7 @@
 /** Light and dark: as the system says, until the reader chooses. */
 
-import { el } from "./dom";
+import { el, sayAgain } from "./dom";
+import { sayInches, saysInches } from "./format";
 
 export type Theme = "light" | "dark";
 
@@ -24,9 +25,23 @@ export function themeButton(changed: () => void): HTMLElement {
   return button;
 }
 
-/** The buttons of the page: light or dark, print. */
-export function tools(changed: () => void): HTMLElement {
+/** The button that switches between millimetres and inches. */
+function unitButton(changed: () => void): HTMLElement {
+  const button = el("button", { type: "button", id: "unit" });
+  const show = () => { button.textContent = saysInches() ? "mm" : "inches"; button.setAttribute("aria-label", `Say lengths in ${button.textContent}`); };
+  button.addEventListener("click", () => {
+    sayInches(!saysInches());
+    show();
+    changed();
+    sayAgain();
+  });
+  show();
+  return button;
+}
+
+/** The buttons of the page: inches or millimetres, light or dark, print. */
+export function tools(recolour: () => void, resay: () => void): HTMLElement {
   const print = el("button", { type: "button" }, "print");
   print.addEventListener("click", () => window.print());
-  return el("div", { class: "buttons tools" }, themeButton(changed), print);
+  return el("div", { class: "buttons tools" }, unitButton(resay), themeButton(recolour), print);
 }

@@ -4,15 +4,16 @@ import uPlot from "uplot";
 import { between } from "./cutter";
 import type { Series } from "./decode";
 import { framedByFinger } from "./finger";
-import { fixed, LENGTH } from "./format";
+import { decimalsOf, LENGTH, per, sayError, sayLength, unitOf, withUnit } from "./format";
 import { widest } from "./letters";
 import { limitsOf, type Limits } from "./limits";
 import type { Model, Quantity } from "./model";
 import type { Palette } from "./palette";
 import type { State } from "./state";
+import { roundStep } from "./view";
 
 interface Curve { name: string; series: Series; colour: string; dash?: number[]; width?: number }
-interface Panel { quantity: string; title: string; unit: string; curves: Curve[]; sigma?: { error: Series; sigma: Series; colour: string }; limits?: Limits }
+interface Panel { quantity: string; title: string; unit: string; bound?: string; curves: Curve[]; sigma?: { error: Series; sigma: Series; colour: string }; limits?: Limits }
 
 /** A trace on the page; folded it is a line with its figures. */
 interface Shown { plot: uPlot | null; panel: Panel; values: HTMLElement[]; playhead: HTMLElement | null }
@@ -46,7 +47,7 @@ export class Traces {
     this.shown = panels.map((panel, index) => this.build(panel, state, colours, height, open[index], index === open.lastIndexOf(true)));
     const axis = document.createElement("p");
     axis.className = "axis";
-    axis.textContent = "arc length s, mm";
+    axis.textContent = `arc length s, ${unitOf()}`;
     this.axis = axis;
     // Below the last that is open, whose numbers it names.
     const last = this.element.children[open.lastIndexOf(true)];
@@ -63,7 +64,7 @@ export class Traces {
   place(place: number, figures = true): void {
     const s = between(this.model.s.values, place);
     // Paper has no table of the figures at the cutter: what stands beside the traces says where it is of.
-    if (figures && this.axis) this.axis.dataset.at = fixed(this.model.s.values[Math.round(place)], 3);
+    if (figures && this.axis) this.axis.dataset.at = sayLength(this.model.s.values[Math.round(place)]);
     // As a share of the width: a plot just built or resized does not know its own yet.
     const [from, to] = this.stretch;
     const share = (s - from) / (to - from);
@@ -73,7 +74,7 @@ export class Traces {
         playhead.style.transform = `translateX(${(100 * share).toFixed(3)}%)`;
       }
       if (figures) panel.curves.forEach((curve, i) => {
-        const text = fixed(curve.series.values[Math.round(place)], Math.min(curve.series.decimals, /^mm($|²|,)/.test(panel.unit) ? LENGTH : 1));
+        const text = sayError(curve.series.values[Math.round(place)], decimalsOf(panel.unit, curve.series.decimals), panel.unit);
         if (values[i].textContent !== text) values[i].textContent = text;
       });
     }
@@ -126,7 +127,7 @@ export class Traces {
     title.append(fold);
     const unit = document.createElement("span");
     unit.className = "unit";
-    unit.textContent = panel.unit;
+    unit.textContent = unitOf(panel.unit) + (panel.bound ?? "");
     head.append(title, unit);
     const values = panel.curves.map((curve) => {
       const entry = document.createElement("span");
@@ -200,8 +201,8 @@ export class Traces {
       },
       scales: { x: { time: false, min, max, range: (_plot, a, b) => [a, b] }, y: { range: (_plot, a, b) => around(a, b, panel.limits) } },
       axes: [
-        { ...axis, show: last, size: 30, gap: 5, space: Math.max(50, number), values: (_plot, ticks) => ticks.map((t) => label(t)) },
-        { ...axis, size: Math.max(54, Math.ceil(number) + 8), gap: 4, space: 16, values: (_plot, ticks) => ticks.map((t) => label(t)) },
+        { ...axis, show: last, size: 30, gap: 5, space: Math.max(50, number), ...ticks("mm") },
+        { ...axis, size: Math.max(54, Math.ceil(number) + 8), gap: 4, space: 16, ...ticks(panel.unit) },
       ],
       hooks: {
         setScale: [(plot, key) => {
@@ -215,8 +216,17 @@ export class Traces {
   }
 }
 
-function label(tick: number): string {
-  return String(Number(tick.toPrecision(6))).replace("-", "−");
+/** Where an axis has numbers, and which: in millimetres where uPlot has them. */
+function ticks(unit: string): Pick<uPlot.Axis, "values" | "splits"> {
+  const one = per(unit);
+  return {
+    values: (_plot, all) => all.map((tick) => String(Number((tick / one).toPrecision(6))).replace("-", "−")),
+    ...(one === 1 ? {} : { splits: (_plot, _axis, low, high, least) => {
+      const step = roundStep(least, one);
+      const first = Math.ceil(low / step);
+      return Array.from({ length: Math.floor(high / step) - first + 1 }, (_, k) => (first + k) * step);
+    } }),
+  };
 }
 
 /** Zero and the tolerance. */
@@ -289,9 +299,9 @@ function panelsOf(model: Model, state: State, colours: Palette): Panel[] {
   const several = passes.filter((pass) => pass.correction).length > 1;
   const shown = selected?.correction;
   const correction = shown ? [{ name: "x", series: shown.x, colour: colours.first }, { name: "y", series: shown.y, colour: colours.second }] : [];
-  const z = state.height === null ? "" : ` at ${fixed(model.report.heights?.z_mm[state.height], 2)} mm height`;
+  const z = state.height === null ? "" : ` at ${withUnit(sayLength(model.report.heights?.z_mm[state.height], 2))} height`;
   const panels: Panel[] = [
-    { quantity: "Wall error", title: `Wall error${z}`, unit: bounded ? "mm, ±2σ" : "mm", curves: errors, sigma: bounded, limits: limitsOf(model.report) },
+    { quantity: "Wall error", title: `Wall error${z}`, unit: "mm", bound: bounded && ", ±2σ", curves: errors, sigma: bounded, limits: limitsOf(model.report) },
     { quantity: "Correction", title: `Correction${several ? ` (${selected?.title})` : ""}`, unit: "mm", curves: correction },
     { quantity: "Deflection", title: `Deflection${suffix}`, unit: "mm", curves: components("dx_mm", "dy_mm", ["x", "y"]) },
     { quantity: "Force", title: `Force${suffix}`, unit: "N", curves: force(selected?.series.force_n, components("fx_n", "fy_n", ["x", "y"]), colours) },

@@ -6,7 +6,7 @@
 import type { ProbePoint, Report } from "./data";
 import { factorField } from "./controls";
 import { card, el } from "./dom";
-import { fixed, LENGTH, signed } from "./format";
+import { fixed, sayDeviation, sayError, sayLength, stepDecimals, unitOf, withUnit } from "./format";
 import { limitsOf, standing, type Limits } from "./limits";
 import { drawMark } from "./marks";
 import type { Model } from "./model";
@@ -62,7 +62,8 @@ export class Unrolled {
   private readonly faces: Surface[];
   private readonly depth: number;
   /** Largest error that the colours tell, mm. */
-  private scale: number;
+  private scale = 0;
+  rescale: () => void = () => undefined;
   /** How much of the length shows the second pass, 0…1. */
   private share = 0;
   private at: { s: number; z: number };
@@ -81,7 +82,6 @@ export class Unrolled {
     this.points = (report.points ?? []).filter((p) => p.s_mm !== undefined && p.z_mm !== undefined && p.error_mm !== undefined);
     this.depth = Math.max(...(report.heights?.z_mm ?? [1]));
     const largest = Math.max(...faces.map((face) => face.largest()));
-    this.scale = roundScale(largest);
     this.at = { s: model.s.values[0], z: this.depth / 2 };
     const key = el("p", { class: "chart-key unrolled-key" }, el("span", {}, this.ends[0], this.bar, this.ends[1]), this.lines,
       this.points.length ? el("span", {}, "marks: touched places, in the colour of what was measured") : null);
@@ -150,9 +150,17 @@ export class Unrolled {
   }
 
   private controls(largest: number): HTMLElement[] {
-    const scales = [...new Set([1, 2, 5, 10, 20, 50].map((part) => roundScale(largest / part)))];
-    const select = el("select", { id: "colour-scale" }, ...scales.map((v) => el("option", { value: String(v) }, `± ${fixed(v, LENGTH)} mm`)));
+    const select = el("select", { id: "colour-scale" });
     select.addEventListener("change", () => { this.scale = Number(select.value); this.draw(); });
+    // Round scales of the unit in which lengths are said; the one chosen stays the one as large a part of the largest error.
+    this.rescale = () => {
+      const scales = [...new Set([1, 2, 5, 10, 20, 50].map((part) => roundScale(largest / part)))];
+      const chosen = Math.max(0, select.selectedIndex);
+      select.replaceChildren(...scales.map((v) => el("option", { value: String(v) }, `± ${withUnit(sayError(v))}`)));
+      select.selectedIndex = Math.min(chosen, scales.length - 1);
+      this.scale = Number(select.value);
+    };
+    this.rescale();
     const controls: HTMLElement[] = [el("label", { class: "field" }, "colours up to", select)];
     if (this.faces.length > 1) {
       const [one, other] = this.faces.map((face) => face.pass.title);
@@ -297,24 +305,22 @@ export class Unrolled {
     c.strokeRect(left - 0.5, top - 0.5, width + 1, height + 1);
     const first = this.model.s.values[0];
     const step = roundStep(this.model.length / Math.max(2, Math.floor(width / 110)));
-    const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
     c.textBaseline = "top";
-    const name = "s mm";
+    const name = `s ${unitOf()}`;
     const end = left + width - c.measureText(name).width;
     c.fillText(name, end, top + height + 6);
     for (let k = Math.ceil(first / step); k * step <= first + this.model.length + 1e-9; k++) {
       const x = this.px(k * step);
-      const text = fixed(k * step, decimals);
+      const text = sayError(k * step, stepDecimals(step));
       const wide = c.measureText(text).width;
       c.fillRect(x - 0.5, top + height, 1, 4);
       const at = Math.max(2, x - wide / 2);
       if (at + wide < end - 8) c.fillText(text, at, top + height + 6);
     }
     const up = roundStep(this.depth / 4);
-    const places = Math.max(0, -Math.floor(Math.log10(up) + 1e-9));
     c.textAlign = "right";
     c.textBaseline = "middle";
-    for (let k = 0; k * up <= this.depth * (1 + 1e-9); k++) c.fillText(fixed(k * up, places), left - 6, this.py(k * up));
+    for (let k = 0; k * up <= this.depth * (1 + 1e-9); k++) c.fillText(sayError(k * up, stepDecimals(up)), left - 6, this.py(k * up));
     c.textAlign = "left";
     c.textBaseline = "alphabetic";
     if (this.faces.length > 1 && this.share > 0 && this.share < 1) {
@@ -347,24 +353,24 @@ export class Unrolled {
       c.fillRect(x, 0, 1, height);
     }
     const beyond = this.faces.some((face) => face.largest() > this.scale);
-    this.ends[0].textContent = `too deep ${signed(-this.scale, LENGTH)}${beyond ? " and more" : ""}`;
-    this.ends[1].textContent = `${signed(this.scale, LENGTH)} mm${beyond ? " and more" : ""}, left`;
+    this.ends[0].textContent = `too deep ${sayDeviation(-this.scale)}${beyond ? " and more" : ""}`;
+    this.ends[1].textContent = `${withUnit(sayDeviation(this.scale))}${beyond ? " and more" : ""}, left`;
     const [lower, upper] = this.levels();
-    this.lines.textContent = `lines: ${this.limits ? "tolerance, " : ""}${signed(upper, LENGTH)} mm full, ${signed(lower, LENGTH)} mm dashed`;
+    this.lines.textContent = `lines: ${this.limits ? "tolerance, " : ""}${withUnit(sayDeviation(upper))} full, ${withUnit(sayDeviation(lower))} dashed`;
   }
 
   /** What the picture shows, for who does not see it. */
   private tell(): void {
     const said = this.faces.map((face) => {
       const share = this.limits ? `, ${fixed(100 * face.within(this.limits), 0)} % of it within tolerance` : "";
-      return `${this.model.passes.length > 1 ? `${face.pass.title}: ` : ""}largest error at ${face.heights} heights ${fixed(face.largest(), LENGTH)} mm${share}`;
+      return `${this.model.passes.length > 1 ? `${face.pass.title}: ` : ""}largest error at ${face.heights} heights ${withUnit(sayError(face.largest()))}${share}`;
     });
     const { solid } = this;
     const drawn = `errors ${this.store.state.magnify}\u00a0×${solid && solid.rise > 1 ? `, height ${solid.rise}\u00a0×` : ""}`;
-    const what = solid ? `What is left stands out from the black line of the wall as it should be, what is too deep lies behind it; seen from behind, through the part, the wall is pale; ${drawn}.` : "Height above the tip of the cutter, mm, over arc length.";
+    const what = solid ? `What is left stands out from the black line of the wall as it should be, what is too deep lies behind it; seen from behind, through the part, the wall is pale; ${drawn}.` : `Height above the tip of the cutter, ${unitOf()}, over arc length.`;
     this.words.textContent = `${what} ${said.join("; ")}.`;
     const seen = solid ? ` Seen ${solid.side}; ${drawn}.` : "";
-    this.stage.setAttribute("aria-label", `${TITLES[chosen]}, ${fixed(this.model.length, 1)} mm long, ${fixed(this.depth, 1)} mm high. ${said.join("; ")}.${seen}`);
+    this.stage.setAttribute("aria-label", `${TITLES[chosen]}, ${withUnit(sayLength(this.model.length, 1))} long, ${withUnit(sayLength(this.depth, 1))} high. ${said.join("; ")}.${seen}`);
   }
 
   /** Puts the cross where the cutter is, at the height shown. */
@@ -384,7 +390,7 @@ export class Unrolled {
     this.cross.style.transform = `translate(${px.toFixed(1)}px, ${py.toFixed(1)}px)`;
     const e = face.at(s, z);
     const name = this.model.passes.length > 1 ? `${face.pass.title} ` : "";
-    this.told.textContent = `s ${fixed(s, 1)} mm, ${fixed(z, 1)} mm above the tip: ${name}${Number.isNaN(e) ? "no wall" : `${signed(e, LENGTH)} mm`}`;
+    this.told.textContent = `s ${withUnit(sayLength(s, 1))}, ${withUnit(sayLength(z, 1))} above the tip: ${name}${Number.isNaN(e) ? "no wall" : withUnit(sayDeviation(e))}`;
   }
 
   private go(): void {

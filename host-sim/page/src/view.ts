@@ -1,5 +1,7 @@
 /** Millimetres to pixels and back, Y up; both scenes of a comparison share one view. */
 
+import { per } from "./format";
+
 export interface Box { x0: number; y0: number; x1: number; y1: number }
 
 /** Pixels kept free at every side of the whole: room for figures. */
@@ -86,16 +88,16 @@ export class View {
   }
 }
 
-/** The next of 1, 2, 5, 10, … that is not larger. */
+/** A length in mm that is 1, 2, 5, 10, … of its unit: the next that is not larger. */
 export function roundBelow(wanted: number): number {
-  const power = 10 ** Math.floor(Math.log10(wanted));
-  const lead = wanted / power;
-  return power * (lead >= 5 ? 5 : lead >= 2 ? 2 : 1);
+  const power = 10 ** Math.floor(Math.log10(wanted / per()));
+  const lead = wanted / per() / power;
+  return per() * power * (lead >= 5 ? 5 : lead >= 2 ? 2 : 1);
 }
 
-/** The next of 1, 2, 5, 10, … that is not smaller. */
-export function roundStep(wanted: number): number {
-  const power = 10 ** Math.floor(Math.log10(wanted));
-  const lead = wanted / power;
-  return power * (lead <= 1 ? 1 : lead <= 2 ? 2 : lead <= 5 ? 5 : 10);
+/** The next that is not smaller; of an error, a length, or `one` other unit. */
+export function roundStep(wanted: number, one = per()): number {
+  const power = 10 ** Math.floor(Math.log10(wanted / one));
+  const lead = wanted / one / power;
+  return one * power * (lead <= 1 ? 1 : lead <= 2 ? 2 : lead <= 5 ? 5 : 10);
 }

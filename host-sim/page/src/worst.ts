@@ -1,7 +1,7 @@
 /** The worst places of the pass shown, as buttons that show them in the picture. */
 
 import { el } from "./dom";
-import { fixed, LENGTH, signed } from "./format";
+import { sayDeviation, sayLength, withUnit } from "./format";
 import { limitsOf } from "./limits";
 import type { Model } from "./model";
 import { worstPlaces, type Place } from "./places";
@@ -23,8 +23,8 @@ export function worstList(model: Model, store: Store, go: (place: Place) => void
     title.textContent = `Worst places${pass && model.passes.length > 1 ? `, ${pass.title}` : ""}`;
     list.replaceChildren(...places.map((place) => {
       const { index, height, error } = place;
-      const z = height === null ? "" : `, ${fixed(model.report.heights?.z_mm[height], 1)} mm above the tip`;
-      const button = el("button", { type: "button" }, el("b", {}, `${signed(error, LENGTH)} mm`), ` ${error > 0 ? "left" : "too deep"}, s ${fixed(model.s.values[index], 1)} mm${z}`);
+      const z = height === null ? "" : `, ${withUnit(sayLength(model.report.heights?.z_mm[height], 1))} above the tip`;
+      const button = el("button", { type: "button" }, el("b", {}, withUnit(sayDeviation(error))), ` ${error > 0 ? "left" : "too deep"}, s ${withUnit(sayLength(model.s.values[index], 1))}${z}`);
       button.addEventListener("click", () => go(place));
       return el("li", {}, button);
     }));

@@ -8,6 +8,7 @@ import "./layout.test.mjs";
 import "./letters.test.mjs";
 import "./cutter.test.mjs";
 import "./learn.test.mjs";
+import "./inches.test.mjs";
 import "./several.test.mjs";
 import "./first.test.mjs";
 import "./unrolled.test.mjs";

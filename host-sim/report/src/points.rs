@@ -5,13 +5,14 @@ use truepath_core::probe::Contact;
 use truepath_core::units::Real;
 use truepath_correction::inspection::PointVerdict;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::{Said, Unit};
 use truepath_ground::table::table;
 use truepath_ground::units::{float, mm, rounded};
 use truepath_job::measurement::{Aside, Measurement};
 use truepath_job::refusal::why;
 
 /// One reading. `status` is `used`, `outlying` (on the wall, little weight in the fit) or `aside` (not used). Of a used
-/// reading x and y are the contact, of one aside what the file says, in work coordinates.
+/// reading x and y are the contact, of one aside what the file says, in work coordinates. The file is in millimetres, its words too.
 #[derive(serde::Serialize)]
 pub(super) struct Row {
     pub(super) line: u32,
@@ -23,7 +24,12 @@ pub(super) struct Row {
     pub(super) ny: Option<f64>,
     pub(super) height: Option<f64>,
     pub(super) error_mm: Option<f64>,
-    pub(super) reason: String,
+    #[serde(serialize_with = "in_mm")]
+    pub(super) reason: Option<Said>,
+}
+
+fn in_mm<S: serde::Serializer>(said: &Option<Said>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(said.as_ref().map_or("", |said| said.in_unit(Unit::Millimetre)))
 }
 
 /// Weight below which a point counts as outlying.
@@ -38,21 +44,27 @@ pub(super) fn row_of(measurement: &Measurement, c: &Contact, fitted: Option<&Obs
         (None, Some(_)) => ", mean error of both walls",
         (None, None) => "",
     };
-    let what = format!(
-        "{} {:.4} mm, nominal {:.4}{of_two}",
-        placed.dimension.name,
-        mm(placed.dimension.value),
-        placed.nominal_mm
-    );
-    let reason = if row.reason.is_empty() { what } else { format!("{what}; {}", row.reason) };
-    Row { line: placed.file_line, reason, ..row }
+    let reason = Said::of(|unit| {
+        let more = row.reason.as_ref().map_or_else(String::new, |said| format!("; {}", said.in_unit(unit)));
+        format!(
+            "{} {:.4} {}, nominal {:.4}{of_two}{more}",
+            placed.dimension.name,
+            unit.of(mm(placed.dimension.value)),
+            unit.name(),
+            unit.of(placed.nominal_mm)
+        )
+    });
+    Row { line: placed.file_line, reason: Some(reason), ..row }
 }
 
 /// A contact, with what the fit made of it.
 fn row_used(c: &Contact, fitted: Option<&Observation>) -> Row {
     let (status, reason) = match fitted.filter(|o| o.weight < OUTLYING) {
-        None => ("used", String::new()),
-        Some(o) => ("outlying", format!("the model expects {:.4} mm here", mm(o.predicted))),
+        None => ("used", None),
+        Some(o) => {
+            let said = |unit: Unit| format!("the model expects {:.4} {} here", unit.of(mm(o.predicted)), unit.name());
+            ("outlying", Some(Said::of(said)))
+        }
     };
     Row {
         line: c.line,
@@ -81,7 +93,7 @@ pub(super) fn row_aside(aside: &Aside) -> Row {
         ny: None,
         height: None,
         error_mm: None,
-        reason: why(&aside.reason),
+        reason: Some(Said::of(|unit| why(&aside.reason, unit))),
     }
 }
 

@@ -10,6 +10,7 @@ use truepath_correction::fillet::{Corner, rewritten};
 use truepath_correction::summary::name_with;
 use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::length::{self, Unit};
 use truepath_ground::output::OutputFolder;
 use truepath_ground::units::{mm, nm, rounded};
 use truepath_job::job::JobFile;
@@ -28,9 +29,9 @@ const RADII: [f64; 2] = [0.02, 100.0];
 pub struct Options {
     /// The job.
     pub job: PathBuf,
-    /// Radius of the wall's corners that the drawing allows, mm: larger than the cutter's by the radius that the arcs will have on its
-    /// path, best by a third of the cutter's or more.
-    #[arg(long, value_name = "MM")]
+    /// Radius of the wall's corners that the drawing allows, mm, or with its unit (0.1in): larger than the cutter's
+    /// by the radius that the arcs will have on its path, best by a third of the cutter's or more.
+    #[arg(long, value_name = "LENGTH", value_parser = length::flag)]
     pub corner_radius: f64,
     /// Folder for the program, part.filleted.nc by the name of the original, and filleted.toml.
     #[arg(short, long, value_name = "DIR")]
@@ -52,6 +53,9 @@ pub struct Report {
     pub job: PathBuf,
     /// The corners, in the order of the program.
     pub corners: Vec<Corner>,
+    /// The unit in which they are told of.
+    #[serde(skip)]
+    pub unit: Unit,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -64,14 +68,15 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
 }
 
 fn words(report: &Report) -> String {
+    let (unit, name) = (report.unit, report.unit.name());
     let mut text = String::new();
     for corner in report.corners.iter().filter(|corner| corner.radius_mm > 0.0) {
         text += &format!(
-            "line {}: a corner of {:.1} degrees gets an arc of {} mm on the path; up to {:.3} mm more stay in the corner of the wall\n",
+            "line {}: a corner of {:.1} degrees gets an arc of {} {name} on the path; up to {:.3} {name} more stay in the corner of the wall\n",
             corner.line,
             corner.turn_deg,
-            rounded(corner.radius_mm, 4),
-            corner.left_mm
+            unit.of(rounded(corner.radius_mm, 4)),
+            unit.of(corner.left_mm)
         );
     }
     let (program, job) = (report.program.display(), report.job.display());
@@ -98,10 +103,12 @@ pub fn run(options: &Options) -> Result<Report, Failure> {
     let cutter = mm(pass.core.setup.radius);
     let radius = options.corner_radius - cutter;
     if !(RADII[0]..=RADII[1]).contains(&radius) {
-        let found = format!("--corner-radius {} with a cutter of {cutter} mm radius", options.corner_radius);
-        let [least, most] = RADII.map(|radius| rounded(cutter + radius, 4));
+        let (unit, name) = (pass.unit(), pass.unit().name());
+        let [wanted, own] = [options.corner_radius, cutter].map(|radius| unit.of(radius));
+        let found = format!("--corner-radius {wanted} {name} with a cutter of {own} {name} radius");
+        let [least, most] = RADII.map(|radius| unit.of(rounded(cutter + radius, 4)));
         let help = "give the radius of the wall's corners that the drawing allows; a cutter that is as wide as they are leaves them sharp on its path";
-        return Err(InputError::new(C001, found, format!("{least} to {most} mm"), help).into());
+        return Err(InputError::new(C001, found, format!("{least} to {most} {name}"), help).into());
     }
     let (written, corners, said) = rewritten(&passes, nm(radius))?;
     let mut warnings: Vec<String> = Vec::new();
@@ -111,7 +118,7 @@ pub fn run(options: &Options) -> Result<Report, Failure> {
         }
     }
     warnings.extend(said);
-    warnings.extend(corners.iter().filter_map(|corner| beside(corner, radius)));
+    warnings.extend(corners.iter().filter_map(|corner| beside(corner, radius, pass.unit())));
     let name = name_with(pass.program.name(), "filleted");
     let side = pass.core.setup.wall;
     let wall = passes.iter().all(|other| other.core.setup.wall == side).then_some(side);
@@ -124,11 +131,17 @@ pub fn run(options: &Options) -> Result<Report, Failure> {
     folder.write(&name, &written.text)?;
     folder.write(JOB, text.as_bytes())?;
     folder.commit()?;
-    Ok(Report { program: options.output.join(&name), job: options.output.join(JOB), corners, warnings })
+    Ok(Report {
+        program: options.output.join(&name),
+        job: options.output.join(JOB),
+        corners,
+        unit: pass.unit(),
+        warnings,
+    })
 }
 
 /// What is said of a corner that did not get the radius.
-fn beside(corner: &Corner, wanted: f64) -> Option<String> {
+fn beside(corner: &Corner, wanted: f64, unit: Unit) -> Option<String> {
     let line = corner.line;
     if corner.radius_mm == 0.0 {
         return Some(format!("line {line}: the lines beside this corner are too short for an arc: it stays sharp"));
@@ -136,8 +149,9 @@ fn beside(corner: &Corner, wanted: f64) -> Option<String> {
     let smaller = corner.radius_mm < wanted - 1e-6;
     smaller.then(|| {
         format!(
-            "line {line}: this corner gets an arc of only {:.3} mm on the path, as the lines beside it are short",
-            corner.radius_mm
+            "line {line}: this corner gets an arc of only {:.3} {} on the path, as the lines beside it are short",
+            unit.of(corner.radius_mm),
+            unit.name()
         )
     })
 }

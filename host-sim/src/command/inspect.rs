@@ -210,7 +210,13 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
     }
     let mut pages = Vec::new();
     for wall in &inspected {
-        let page = pages::inspected(wall.pass, wall.measurement, &wall.judgement, &wall.summary, &wall.told)?;
+        let page = pages::inspected(
+            wall.pass,
+            wall.measurement,
+            [&wall.judgement, &wall.in_inches],
+            &wall.summary,
+            &wall.told,
+        )?;
         pages.push((contour_name(wall.pass), page));
     }
     let inspection = together(&inspected, &measured)?;
@@ -232,8 +238,8 @@ struct Inspected<'a> {
     rule: Option<Rule>,
     aside: SetAside,
     judgement: Judgement,
-    /// The same in the unit of the program.
-    in_unit: Judgement,
+    /// The same in inches.
+    in_inches: Judgement,
     summary: InspectSummary,
     /// Warnings without one for every reading set aside.
     told: Vec<String>,
@@ -259,9 +265,9 @@ fn one<'a>(pass: &'a Pass, measurement: &'a Measurement, several: bool) -> Resul
     let coverage = coverage(&places, wall, reach);
     let deviations: Vec<Offset> = measurement.contacts.iter().map(|c| c.error).collect();
     let aside = SetAside::of(measurement.rejected.iter().map(|r| &r.reason), pass.job.numbers.tool.diameter);
-    // Files and page are in millimetres.
+    // Files are in millimetres, the page has both units.
     let judged = |unit| judge(rule, &deviations, aside, &coverage, unit);
-    let (judgement, in_unit) = (judged(Unit::Millimetre), judged(pass.unit()));
+    let (judgement, in_inches) = (judged(Unit::Millimetre), judged(Unit::Inch));
     let name = several.then(|| contour_name(pass));
     let contacts = measurement.contacts.iter().enumerate().map(|(at, c)| Point {
         contour: name.clone(),
@@ -276,7 +282,7 @@ fn one<'a>(pass: &'a Pass, measurement: &'a Measurement, several: bool) -> Resul
     let contacts = contacts.collect();
     let summary = inspect_summary(pass, measurement, &judgement, coverage, warnings);
     let summary = InspectSummary { contour: name, ..summary };
-    Ok(Inspected { pass, measurement, rule, aside, judgement, in_unit, summary, told, contacts })
+    Ok(Inspected { pass, measurement, rule, aside, judgement, in_inches, summary, told, contacts })
 }
 
 /// The inspection as a QIF document.
@@ -296,8 +302,9 @@ fn together(inspected: &[Inspected<'_>], measured: &[(Pass, Measurement)]) -> Re
     if let ([one], [_]) = (inspected, measured) {
         let (summary, contacts) = (one.summary.clone(), one.contacts.clone());
         let unit = one.pass.unit();
-        let statements = statements(&one.in_unit, &summary.surface, summary.feature.as_ref(), unit);
-        let told = Judgement { statements, ..one.in_unit.clone() };
+        let judged = if unit == Unit::Inch { &one.in_inches } else { &one.judgement };
+        let statements = statements(judged, &summary.surface, summary.feature.as_ref(), unit);
+        let told = Judgement { statements, ..judged.clone() };
         return Ok(inspection(summary, contacts, unit, told));
     }
     let rule = inspected.first().and_then(|wall| wall.rule);

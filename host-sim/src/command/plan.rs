@@ -46,8 +46,9 @@ pub struct Options {
     /// What the probe measured on the part cut by the job's program.
     #[arg(long, value_name = "FILE")]
     pub probe: PathBuf,
-    /// Half the width of the tolerance of the wall at every height, mm; without it that of `[part]`.
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    /// Half the width of the tolerance of the wall at every height, mm, or with its unit (0.0005in, 12um); without it
+    /// that of `[part]`.
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     pub tolerance: Option<String>,
     /// Percent of the machines that the points allow whose wall has to be within the tolerance.
     #[arg(long, value_name = "PERCENT", default_value = "95")]
@@ -618,15 +619,17 @@ pub(super) fn program_name(pass: &Pass) -> String {
 }
 
 fn wanted(options: &Options, job: &JobFile) -> Result<Wanted, Failure> {
-    let flag = |name: &str, text: &str, limits: Limits, help: &str| {
-        let number = Decimal::parse(text).filter(|n| limits.admits(*n)).map(Decimal::as_f64);
-        number.ok_or_else(|| {
+    let flag = |name: &str, text: &str, number: Option<Decimal>, limits: Limits, help: &str| {
+        number.filter(|n| limits.admits(*n)).map(Decimal::as_f64).ok_or_else(|| {
             let found = format!("{name} on the command line is {text:?}");
             Failure::from(InputError::new(C001, found, limits.phrase(), help))
         })
     };
     let tolerance_mm = match &options.tolerance {
-        Some(text) => flag("--tolerance", text, TOLERANCE, "write --tolerance 0.02 for ±0.02 mm at every height")?,
+        Some(text) => {
+            let help = "write --tolerance 0.02 for ±0.02 mm at every height, 0.0008in for ±0.0008 in";
+            flag("--tolerance", text, Decimal::length(text), TOLERANCE, help)?
+        }
         None => match job.part.tolerance {
             Some(tolerance) => mm(tolerance.upper).min(-mm(tolerance.lower)),
             None => {
@@ -636,8 +639,9 @@ fn wanted(options: &Options, job: &JobFile) -> Result<Wanted, Failure> {
             }
         },
     };
-    let confidence =
-        flag("--confidence", &options.confidence, CONFIDENCE, "write --confidence 95 for 95 of 100 parts")? / 100.0;
+    let text = &options.confidence;
+    let help = "write --confidence 95 for 95 of 100 parts";
+    let confidence = flag("--confidence", text, Decimal::parse(text), CONFIDENCE, help)? / 100.0;
     Ok(Wanted { tolerance_mm, confidence, limits: job.plan })
 }
 

@@ -10,6 +10,7 @@ use truepath_core::geometry::{Side, Vector};
 use truepath_core::units::Offset;
 use truepath_correction::edits::block_edits;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length;
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::mm;
 use truepath_job::job::{JobFile, Mode, PerSection, PocketTable, Which};
@@ -37,8 +38,9 @@ pub struct Options {
     /// Folder for corrected.nc, sections.csv, correction.csv, before-after.svg and summary.json.
     #[arg(short, long, value_name = "DIR", required_unless_present = "materials")]
     pub output: Option<PathBuf>,
-    /// Half of the width of the band the walls may lie in, mm; over that of the job.
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    /// Half of the width of the band the walls may lie in, mm, or with its unit (0.0005in, 12um); over that of the
+    /// job.
+    #[arg(long, value_name = "LENGTH", value_parser = length::flag, allow_negative_numbers = true)]
     pub tolerance: Option<f64>,
     /// How a section out of the band is shifted; over what the job says.
     #[arg(long, value_name = "WAY")]

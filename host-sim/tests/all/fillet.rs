@@ -105,7 +105,10 @@ fn a_radius_no_larger_than_the_cutters_and_a_round_contour_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let job = format!("dialect = \"haas\"\n{JOB}").replace("teeth = 4", "teeth = 4\ncompensation = \"radius\"");
     let (code, found) = refused(run(folder.path(), "part.nc", WINDOW, &job, 5.0));
-    assert!(code == "C001" && found.contains("5 mm radius"), "{found}");
+    assert!(
+        code == "C001" && found.contains("--corner-radius 0.1968504 in with a cutter of 0.1968504 in radius"),
+        "{found}"
+    );
     let circle = "G21 G90 G17\nT1 M6\nS3000 M3\nG0 X30 Y0 Z5\nG1 Z-10 F200\nG3 X30 Y0 I-30 J0 F300\nG0 Z5\nM30\n";
     let (code, found) = refused(run(folder.path(), "part.nc", circle, &format!("wall = \"right\"\n{JOB}"), 7.0));
     assert!(code == "P023" && found.starts_with("no sharp inside corner"), "{code} {found}");

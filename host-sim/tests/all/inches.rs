@@ -128,6 +128,80 @@ fn a_program_in_inches_is_told_about_in_inches_and_files_stay_in_millimetres() {
     assert!(split.contains("the contour 0.0100 in away from the wall"), "{split}");
 }
 
+/// Written in a hurry: no blanks, lower case, G20 in the middle of a block, points without digits before them.
+const SLOVENLY: &str = "%\nO2207 (bracket, 1/2 em)\nn10 g90 g17 g40 g80 g49\nn20 t2 m6 (1/2 END MILL 4FL)\nn30 s5200 m3 g20 g54\nn40 g0x-.8y-.8\ng43 h2 z1.\nz.1\ng1z-.4f20.\n\
+    g1x-.25 f45.\n y2.25\nx3.25y2.25\ny-.25\nx-.8\ng0 z1.\nm5\nm30\n%\n";
+
+#[test]
+fn flags_take_inches_and_what_is_refused_or_doubted_is_said_in_inches() {
+    let desk = Desk::new();
+    fs::write(desk.0.path().join("part.nc"), SLOVENLY).expect("a program");
+    desk.said("init part.nc --yes --set allowance=0.015in --set probe.ball_diameter_in=0.125 --set material=al-7075-t6 --set stiffness=2500 --set wall=right -o job.toml");
+    desk.said("probe job.toml --clearance 0.1in -o probe.nc");
+    desk.said("simulate job.toml --plant plant.toml --touch probe.nc -o first");
+
+    // The same tolerance in three ways.
+    let of = |text: &str, n: u32| {
+        desk.ended(&format!("correct job.toml --probe first/probe.txt --tolerance {text} -o c{n}"), &[0]);
+        fs::read(desk.0.path().join(format!("c{n}/summary.json"))).expect("a summary")
+    };
+    let metric = of("0.0127", 1);
+    assert!(metric == of("0.0005in", 2) && metric == of("12.7um", 3));
+    let (_, told) = desk.ended("correct job.toml --probe first/probe.txt --tolerance 0.5ft -o c4", &[2]);
+    assert!(told.contains("--tolerance on the command line is \"0.5ft\"") && told.contains("0.0008in"), "{told}");
+
+    let (said, warned) = desk.ended("correct job.toml --probe first/probe.txt --tolerance 0.0005in -o corrected", &[0]);
+    assert!(warned.contains("cannot hold 0.0005 in at every height"), "{warned}");
+    assert!(warned.contains("--tolerance 0.0005in") && warned.contains("--corner-radius 0.34in"), "{warned}");
+    assert_eq!((has_metric(&said), has_metric(&warned)), (None, None));
+    let (_, told) = desk.ended("fillet job.toml --corner-radius 0.2in -o f", &[2]);
+    assert!(told.contains("--corner-radius 0.2 in with a cutter of 0.25 in radius"), "{told}");
+    let said = desk.said("fillet job.toml --corner-radius 0.34in -o f");
+    assert!(said.contains("gets an arc of 0.09 in on the path"), "{said}");
+    assert_eq!((has_metric(&said), has_metric(&told)), (None, None));
+    let (_, told) = desk.ended("fillet job.toml --corner-radius wide -o g", &[1, 2]);
+    assert!(told.contains("20um, 0.02in"), "{told}");
+
+    let said = desk.said("probe job.toml --dimensions --reach 6in --uncertainty 0.001in -o dims");
+    assert!(said.contains(" Z in  nominal in\n") && said.contains("  3.0000  "), "{said}");
+    assert_eq!(has_metric(&said), None);
+
+    // Touches that are somewhere else: of another datum, of another part, a single one.
+    let touches = desk.text("first/probe.txt");
+    let moved = |by: f64, only: Option<usize>| -> String {
+        let mut count = 0;
+        let line = |line: &str| {
+            let touch = line.strip_prefix("G801 ").and_then(|rest| rest.split_once('X'));
+            let Some((name, (x, rest))) = touch.and_then(|(name, rest)| Some((name, rest.split_once('Y')?))) else {
+                return line.to_owned();
+            };
+            count += 1;
+            if only.is_some_and(|only| only != count) {
+                return line.to_owned();
+            }
+            format!("G801 {name}X{:.5} Y{rest}", x.trim().parse::<f64>().expect("a number") + by)
+        };
+        touches.lines().map(line).map(|line| line + "\n").collect()
+    };
+    for (name, by, only, words) in [
+        ("datum", 0.02, None, "in are taken off all of them: the datum is shifted by that"),
+        ("far", 3.0, None, "from the nominal wall"),
+        ("one", 0.35, Some(1), "in from the nominal wall"),
+    ] {
+        let text = moved(by, only);
+        assert_ne!(text, touches, "the touches are moved");
+        fs::write(desk.0.path().join("moved.txt"), text).expect("touches");
+        for command in ["correct", "inspect"] {
+            let (said, told) =
+                desk.ended(&format!("{command} job.toml --probe moved.txt -o {name}-{command}"), &[0, 1, 2, 3]);
+            if command == "correct" {
+                assert!(told.contains(words), "{name}: {told}");
+            }
+            assert_eq!((has_metric(&said), has_metric(&told)), (None, None), "{command} {name}");
+        }
+    }
+}
+
 #[test]
 fn pictures_of_a_program_in_inches_are_in_inches() {
     let desk = Desk::new();

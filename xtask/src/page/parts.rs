@@ -2,7 +2,7 @@
 //!
 //! The demonstration; a pass predicted and one cut by the virtual machine; an island with its wall on the left, cut
 //! conventionally, corrected, learnt from, inspected and planned; a plate with five contours, touched by the virtual machine, corrected,
-//! learnt from, inspected and planned together; and a contour of ten metres with 100,000 samples.
+//! learnt from, inspected and planned together; a part of a program in inches; and a contour of ten metres with 100,000 samples.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -17,6 +17,15 @@ use crate::step::Failure;
 const ISLAND: &str = "host-sim/page/tests/parts/island";
 /// Job, program and machine of the plate.
 const PLATE: &str = "host-sim/page/tests/parts/plate";
+/// Program of a part in inches and its machine; what its job says beside the program.
+const INCHES: [&str; 2] = ["tests/data/shop/fusion-haas-inch-cover.nc", "tests/data/shop/plant.toml"];
+const INCH_JOB: [&str; 5] = [
+    "allowance=0.02in",
+    "probe.ball_diameter_in=0.25",
+    "material=al-7075-t6",
+    "stiffness=2500",
+    "part.tolerance_in=0.0015",
+];
 /// Radius, depth and number of the lobes of the long contour, mm: a star, ten metres long to a few percent.
 const STAR: (f64, f64, f64) = (1480.0, 60.0, 12.0);
 /// Length of its lines, mm.
@@ -74,6 +83,7 @@ pub fn write() -> Result<PathBuf, Failure> {
     let tolerance = [word("--tolerance"), word("0.02"), word("--write")];
     truepath(&[&[word("plan"), force, job, word("--probe"), first][..], &tolerance].concat(), "plan")?;
     plate(&pages.join("plate"), &truepath)?;
+    inches(&pages.join("inch"), &truepath)?;
     let long = pages.join("long");
     long_job(&long).map_err(|e| Failure::found(format!("{}: {e}", long.display())))?;
     truepath(&[word("simulate"), force, &long.join("job.toml")], "long")?;
@@ -107,6 +117,31 @@ fn plate(folder: &Path, truepath: &impl Fn(&[&Path], &str) -> Result<(), Failure
     fs::write(&planned, text.replace("program = \"program.nc\"", &program) + FEW)
         .map_err(|e| Failure::found(format!("{}: {e}", planned.display())))?;
     truepath(&[word("plan"), word("--force"), &planned, word("--probe"), &touched("first")], "plate/plan")
+}
+
+/// A part in inches the whole way.
+fn inches(folder: &Path, truepath: &impl Fn(&[&Path], &str) -> Result<(), Failure>) -> Result<(), Failure> {
+    let word = Path::new;
+    let [part, machine] = INCHES.map(|file| root().join(file));
+    let (job, corrected) = (folder.join("job.toml"), folder.join("correct"));
+    let touched = |part: &str| folder.join(part).join("probe.txt");
+    let init = [word("init"), word("--force"), &part, word("--yes")];
+    let set = INCH_JOB.iter().flat_map(|said| [word("--set"), word(said)]);
+    fs::create_dir_all(folder).map_err(|e| Failure::found(format!("{}: {e}", folder.display())))?;
+    truepath(&init.into_iter().chain(set).collect::<Vec<_>>(), "inch/job.toml")?;
+    let verify = folder.join("verify.nc");
+    let run = |command: &str, more: &[&Path], out: &str| {
+        let arguments: Vec<&Path> =
+            [word(command), word("--force"), &job].into_iter().chain(more.iter().copied()).collect();
+        truepath(&arguments, &format!("inch/{out}"))
+    };
+    run("probe", &[], "verify.nc")?;
+    let cut = [word("--plant"), &machine, word("--touch"), &verify];
+    run("simulate", &cut, "first")?;
+    run("inspect", &[word("--probe"), &touched("first")], "inspect")?;
+    run("correct", &[word("--probe"), &touched("first")], "correct")?;
+    run("simulate", &[&cut[..], &[word("--from"), &corrected]].concat(), "second")?;
+    run("learn", &[word("--probe"), &touched("second"), word("--from"), &corrected], "learn")
 }
 
 /// Program and job of the long contour.

@@ -10,6 +10,7 @@
 use truepath_core::correct::Node;
 use truepath_core::cut::Path;
 use truepath_ground::diagnostics::InputError;
+use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 use truepath_job::pass::Pass;
 
@@ -28,13 +29,14 @@ const BEYOND_NOISE: f64 = 5.0;
 ///
 /// # Errors
 /// `Q007` with both distances.
-pub fn refuse_uncorrected(path: &Path, part: &PartPoints, before: &Joint) -> Result<(), InputError> {
+pub fn refuse_uncorrected(path: &Path, part: &PartPoints, before: &Joint, unit: Unit) -> Result<(), InputError> {
     let [with, without] = distances(path, part, before);
     if !is_clear(with, without, part) {
         return Ok(());
     }
+    let ([with, without], name) = ([with, without].map(|rms| unit.of(rms)), unit.name());
     let found = format!(
-        "the points lie {without:.4} mm (rms) from the wall that no correction leaves, and {with:.4} mm from that of the correction in --from"
+        "the points lie {without:.4} {name} (rms) from the wall that no correction leaves, and {with:.4} {name} from that of the correction in --from"
     );
     let expected = format!("the points of part {}, cut with that correction", part.number);
     Err(Q007.error(found, expected))
@@ -75,8 +77,10 @@ pub fn refuse_corrected(pass: &Pass, path: &Path, history: &History, new: &Part)
     if !is_clear(without, with, &part) {
         return Ok(());
     }
+    let unit = pass.unit();
+    let ([with, without], name) = ([with, without].map(|rms| unit.of(rms)), unit.name());
     refused(format!(
-        "the points lie {with:.4} mm (rms) from the wall of the correction that is in the output folder, and {without:.4} mm from the one that no correction leaves"
+        "the points lie {with:.4} {name} (rms) from the wall of the correction that is in the output folder, and {without:.4} {name} from the one that no correction leaves"
     ))
 }
 

@@ -48,13 +48,13 @@ pub fn update(
     progress: &mut dyn FnMut(f64),
 ) -> Result<Update, Failure> {
     let before = joint(pass, path, &earlier, companions, None, &mut |share| progress(0.3 * share));
-    refuse_uncorrected(path, &newest, &before)?;
+    refuse_uncorrected(path, &newest, &before, pass.unit())?;
     let mut parts = earlier;
     parts.push(newest);
     let after = joint(pass, path, &parts, companions, None, &mut |share| progress(0.3 + 0.3 * share));
     // Levels are counted from that of the newest part.
     let level = parts.len().checked_sub(2).and_then(|previous| after.own.get(previous)).map_or(0.0, |own| -own.level);
-    let moved = parts.last().and_then(|newest| moved(path, newest, &before, level));
+    let moved = parts.last().and_then(|newest| moved(path, newest, &before, (level, pass.unit())));
     let holdout = Holdout::of(&parts).map(|held| {
         let less = held.without(&parts);
         let updated =
@@ -84,7 +84,7 @@ pub fn update(
     let mut chosen = if set_aside { before } else { after };
     let all: Vec<_> = chosen.observations.iter().flatten().copied().collect();
     chosen.core.check(&all).map_err(|error| pass.refused(&error))?;
-    let mut verdict = Verdict::of(&parts, &monitor, promise, holdout, set_aside.then_some(again), fits);
+    let mut verdict = Verdict::of(&parts, &monitor, promise, holdout, set_aside.then_some(again), (fits, pass.unit()));
     let beside = chosen.beside.take();
     verdict.residual = beside.as_ref().and_then(UnmodelledError::of);
     let beside = beside.map(|beside| beside.along).unwrap_or_default();

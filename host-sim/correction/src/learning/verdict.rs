@@ -3,6 +3,7 @@
 use truepath_core::correct::Node;
 use truepath_core::cut::Path;
 use truepath_core::units::Offset;
+use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 
 use super::holdout::Residuals;
@@ -122,17 +123,18 @@ impl Verdict {
         promise: Promise,
         holdout: Option<Residuals>,
         again: Option<usize>,
-        fits: bool,
+        (fits, unit): (bool, Unit),
     ) -> Self {
         let (now, before) = (monitor.now, monitor.before);
+        let [now_rms, before_rms] = [now.rms_mm, before.rms_mm].map(|rms| unit.of(rms));
+        let name = unit.name();
         let mut remarks = Vec::new();
         let rolled_back = again.is_some_and(|again| again + 1 < parts.len());
         let used_again = again.and_then(|again| parts.get(again)).map(UsedAgain::of);
         if let Some(used) = used_again {
             let why = if fits {
                 format!(
-                    "it came out worse ({:.4} mm after {:.4} mm, rms at its places) and the updated model does not foretell the places it was not shown",
-                    now.rms_mm, before.rms_mm
+                    "it came out worse ({now_rms:.4} {name} after {before_rms:.4} {name}, rms at its places) and the updated model does not foretell the places it was not shown"
                 )
             } else {
                 "most points contradict those of the parts before".to_owned()
@@ -144,8 +146,8 @@ impl Verdict {
             ));
         } else if monitor.is_worse() {
             remarks.push(format!(
-                "part {} came out worse than part {} ({:.4} mm after {:.4} mm, rms at its places), and the updated model foretells the places it was not shown: the next correction is a new one",
-                now.part, before.part, now.rms_mm, before.rms_mm
+                "part {} came out worse than part {} ({now_rms:.4} {name} after {before_rms:.4} {name}, rms at its places), and the updated model foretells the places it was not shown: the next correction is a new one",
+                now.part, before.part
             ));
         }
         if promise.within_two_sigma * 4 < promise.places * 3 {

@@ -31,5 +31,5 @@ pub fn noticed(pass: &Pass, measurement: &Measurement) -> Option<String> {
     let which = if moved.is_wrong() { moved } else { Rigid::of(&deflected.observations).filter(Rigid::is_wrong)? };
     // A part that a correction has cut shows the shift by itself.
     let best = if corrected.cost[2] < left { corrected } else { which };
-    Some(format!("the points do not fit the job: {}; {}", best.words(), best.help()))
+    Some(format!("the points do not fit the job: {}; {}", best.words(pass.unit()), best.help()))
 }

@@ -1,6 +1,7 @@
 //! What all points are off in common: a shift of the datum and a difference in size, beside what is predicted.
 
 use truepath_core::identify::Observation;
+use truepath_ground::length::Unit;
 use truepath_ground::units::float;
 
 use super::look::CLAMPED_MM;
@@ -76,12 +77,13 @@ impl Rigid {
     }
 
     /// What is wrong.
-    pub fn words(&self) -> String {
-        let [x, y] = self.datum_mm.map(|v| v + 0.0);
+    pub fn words(&self, unit: Unit) -> String {
+        let [x, y] = self.datum_mm.map(|v| unit.of(v + 0.0));
+        let name = unit.name();
         if self.is_moved() {
-            format!("all points lie X {x:.3} and Y {y:.3} mm from where they should")
+            format!("all points lie X {x:.3} and Y {y:.3} {name} from where they should")
         } else {
-            format!("all points are off by {:+.3} mm", self.level_mm)
+            format!("all points are off by {:+.3} {name}", unit.of(self.level_mm))
         }
     }
 

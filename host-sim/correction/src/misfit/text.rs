@@ -3,6 +3,7 @@
 use truepath_core::identify::Parameter;
 use truepath_core::job::ZReference;
 use truepath_ground::diagnostics::InputError;
+use truepath_ground::length::Unit;
 use truepath_ground::units::{float, mm};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
@@ -19,7 +20,7 @@ const LISTED: usize = 5;
 impl Misfit {
     /// The error, at the worst point.
     pub fn error(&self, pass: &Pass, measurement: &Measurement) -> InputError {
-        let found = format!("{}; {}{}", self.what(), self.why(pass, measurement), self.worst(measurement));
+        let found = format!("{}; {}{}", self.what(pass.unit()), self.why(pass, measurement), self.worst(measurement));
         let help = self.causes.first().map_or_else(
             || {
                 "measure what is named once more; look whether program, part and file belong together and what the job says of tool, stock and probe".to_owned()
@@ -48,40 +49,42 @@ impl Misfit {
     pub fn sentence(&self, pass: &Pass, measurement: &Measurement) -> String {
         format!(
             "the points do not fit the job: {}; {}{}",
-            self.what(),
+            self.what(pass.unit()),
             self.why(pass, measurement),
             self.worst(measurement)
         )
     }
 
-    fn what(&self) -> String {
+    fn what(&self, unit: Unit) -> String {
+        let name = unit.name();
         match self.reason {
             Some(Reason::Points) => {
                 let (unfit, all) = self.look.count();
                 format!("{unfit} of {all} points do not fit a machine like the one in the job")
             }
             Some(Reason::Level) => format!(
-                "all points are off by {:+.3} mm, more than a worn cutter leaves or one that runs out takes",
-                self.look.level_mm[0]
+                "all points are off by {:+.3} {name}, more than a worn cutter leaves or one that runs out takes",
+                unit.of(self.look.level_mm[0])
             ),
             Some(Reason::Parameter(parameter, far)) => {
                 format!("{} would have to be {far:.0} standard deviations from what the job says", said(parameter))
             }
             None => format!(
-                "the points fit the job to {:.4} mm (rms), and other assumptions far better",
-                self.stated.score.rms_mm
+                "the points fit the job to {:.4} {name} (rms), and other assumptions far better",
+                unit.of(self.stated.score.rms_mm)
             ),
         }
     }
 
     /// The causes with their figures.
     fn why(&self, pass: &Pass, measurement: &Measurement) -> String {
-        let stated = figures(&self.stated);
+        let unit = pass.unit();
+        let stated = figures(&self.stated, unit);
         if self.causes.is_empty() {
             return format!("none of the causes that were tried explains it (as stated: {stated})");
         }
-        let each =
-            self.causes.iter().map(|trial| format!("{} ({})", trial.cause.words(pass, measurement), figures(trial)));
+        let words = |trial: &Trial| format!("{} ({})", trial.cause.words(pass, measurement), figures(trial, unit));
+        let each = self.causes.iter().map(words);
         let each: Vec<String> = each.collect();
         format!("they fit {}; as stated: {stated}", each.join(", or alike "))
     }
@@ -95,15 +98,19 @@ impl Misfit {
         let each = trial.worst().into_iter().take(LISTED).map(|k| {
             let o = &trial.observations[k];
             let name = measurement.name_of(trial.lines[k]);
-            format!("{name}: {:.3} mm measured, {:.3} mm expected", mm(o.error), mm(o.predicted))
+            let (unit, [error, predicted]) = (measurement.unit, [o.error, o.predicted].map(mm));
+            let [error, predicted] = [error, predicted].map(|v| unit.of(v));
+            format!("{name}: {error:.3} {in_unit} measured, {predicted:.3} {in_unit} expected", in_unit = unit.name())
         });
         let each: Vec<String> = each.collect();
         format!("; worst: {}", each.join(", "))
     }
 }
 
-fn figures(trial: &Trial) -> String {
-    format!("rms {:.4} mm, chi-square {:.0} of {} points", trial.score.rms_mm, trial.score.cost, trial.score.points)
+fn figures(trial: &Trial, unit: Unit) -> String {
+    let score = &trial.score;
+    let (rms, name) = (unit.of(score.rms_mm), unit.name());
+    format!("rms {rms:.4} {name}, chi-square {:.0} of {} points", score.cost, score.points)
 }
 
 /// A parameter as a machinist says it.
@@ -124,21 +131,23 @@ pub(crate) const fn said(parameter: Parameter) -> &'static str {
 impl Cause {
     /// As a condition: "they fit …".
     pub fn words(self, pass: &Pass, measurement: &Measurement) -> String {
+        let (unit, name) = (pass.unit(), pass.unit().name());
         match self {
             Self::Nothing => "as stated".to_owned(),
             Self::Datum([x, y]) => {
-                format!("when X {x:.3} and Y {y:.3} mm are taken off all of them: the datum is shifted by that", x = x + 0.0, y = y + 0.0)
+                let [x, y] = [x, y].map(|v| unit.of(v + 0.0));
+                format!("when X {x:.3} and Y {y:.3} {name} are taken off all of them: the datum is shifted by that")
             }
-            Self::Level(off) => match self.ball(pass) {
-                Some(why) => format!("when {off:+.3} mm are taken off all of them: {why}"),
-                None => format!("when {off:+.3} mm are taken off all of them: ball or cutter are not as large as the job says"),
-            },
+            Self::Level(off) => {
+                let why = self.ball(pass).unwrap_or("ball or cutter are not as large as the job says");
+                format!("when {:+.3} {name} are taken off all of them: {why}", unit.of(off))
+            }
             Self::Sign => "with the sign of all deviations turned".to_owned(),
             Self::Spindle => "when climb and conventional are exchanged: the spindle turned the other way, or the part was cut the other way round".to_owned(),
-            Self::Allowance(mm) => format!("with an allowance of about {} mm", figure(mm)),
+            Self::Allowance(mm) => format!("with an allowance of about {} {name}", figure(unit.said(mm))),
             Self::Teeth(teeth) => format!("with {teeth} teeth"),
             Self::Helix(deg) => format!("with a helix of about {deg} degrees"),
-            Self::Height(mm) => format!("when Z of all of them is raised by about {mm:.1} mm"),
+            Self::Height(mm) => format!("when Z of all of them is raised by about {:.1} {name}", unit.of(mm)),
             Self::Stray(lines) => format!("without {}", listed(lines, measurement)),
             Self::MirroredX => "with the sign of X turned".to_owned(),
             Self::MirroredY => "with the sign of Y turned".to_owned(),

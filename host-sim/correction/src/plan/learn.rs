@@ -9,6 +9,7 @@ use truepath_core::process::{Aim, ImmersionGrid, Load};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::codes::J008;
 use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::length::Unit;
 use truepath_ground::rows::median;
 use truepath_ground::units::{float, mm};
 use truepath_job::job::PlanTable;
@@ -152,7 +153,7 @@ pub fn learn(
     let all: Vec<CutPart> = before.iter().chain(&touched).cloned().collect();
     let before = Joint::of(&walls, (prior, start), &before, &mut |share| progress(0.25 * share));
     let before = before.ok_or_else(nothing)?;
-    refuse_uncorrected(&walls, &before, &touched, mm(first.measurement.noise), number)?;
+    refuse_uncorrected(&walls, &before, &touched, mm(first.measurement.noise), (number, first.measurement.unit))?;
     let start = before.core.fit.theta;
     let after = Joint::of(&walls, (prior, start), &all, &mut |share| progress(0.25 + 0.35 * share));
     let after = after.ok_or_else(nothing)?;
@@ -335,7 +336,7 @@ fn refuse_uncorrected(
     before: &Joint,
     part: &[CutPart],
     noise_mm: f64,
-    number: u32,
+    (number, unit): (u32, Unit),
 ) -> Result<(), InputError> {
     let plain = |cut: &CutPart| CutPart { passes: as_programmed(walls[cut.wall]), ..cut.clone() };
     let plain: Vec<CutPart> = part.iter().map(plain).collect();
@@ -347,8 +348,9 @@ fn refuse_uncorrected(
     let (with, without) = (missed(part), missed(&plain));
     let [far, near] = [&with, &without].map(|missed| middle(missed));
     if far > CLEARLY * near && far > BEYOND_NOISE * noise_mm {
+        let ([near, far], name) = ([near, far].map(|median| unit.of(median)), unit.name());
         let found = format!(
-            "the points lie {near:.4} mm (median) from the wall that no correction leaves, and {far:.4} mm from that of the planned program in --from"
+            "the points lie {near:.4} {name} (median) from the wall that no correction leaves, and {far:.4} {name} from that of the planned program in --from"
         );
         return Err(Q007.error(found, format!("the points of part {number}, cut with that program")));
     }

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use truepath_ground::length::Unit;
+
 use super::dimensions::{DimensionPlan, PlannedDimension};
 
 /// The file of dimensions with its values to be typed in. `sheet` names the printed sheet.
@@ -20,7 +22,7 @@ pub fn table(plan: &DimensionPlan, sheet: &str) -> String {
             text,
             "\n[[dimension]]  # {}: {of}{}; nominal {:.3}\nname = \"{}\"\nkind = \"{}\"\nalong = \"{}\"\n{across} = {}\nnear_mm = {:.3}\nz_mm = {:.3}\ninstrument = \"{}\"\nuncertainty_mm = {}\nvalue_mm = \"\"\n",
             k + 1,
-            d.words(),
+            d.words(Unit::Millimetre),
             d.nominal_mm,
             k + 1,
             d.kind,
@@ -55,7 +57,7 @@ pub fn sheet(plan: &DimensionPlan, title: &str, table: &str) -> String {
             rows,
             "<tr><td>{}</td><td>{contour}{}<br><small>{}</small></td><td>{:.2}</td><td>{:.3}</td><td class=room></td></tr>",
             k + 1,
-            escaped(&d.words()),
+            escaped(&d.words(Unit::Millimetre)),
             escaped(&d.why),
             d.z_mm,
             d.nominal_mm

@@ -70,10 +70,10 @@ pub struct PlannedDimension {
 
 impl PlannedDimension {
     /// What to measure, in words.
-    pub fn words(&self) -> String {
+    pub fn words(&self, unit: Unit) -> String {
         let Self { kind, along, across_mm, .. } = self;
         let across = if *along == "x" { "Y" } else { "X" };
-        format!("{kind} along {} at {across}{across_mm:.2}", along.to_uppercase())
+        format!("{kind} along {} at {across}{:.2}", along.to_uppercase(), unit.of(*across_mm))
     }
 
     /// The contour it is of, or both that it is between; empty where there is one alone.
@@ -111,6 +111,9 @@ impl DimensionSettings {
 pub struct DimensionPlan {
     /// The most telling first.
     pub dimensions: Vec<PlannedDimension>,
+    /// The unit in which they are told of.
+    #[serde(skip)]
+    pub unit: Unit,
     /// What they are taken with.
     pub instrument: &'static str,
     /// What a reading stays within, ± at two standard deviations, mm.
@@ -146,7 +149,9 @@ pub fn plan_dimensions(
     let faced: Vec<Faced> = faced(&Part::of(&walls)).into_iter().filter(taken).collect();
     let Some(pass) = passes.first().filter(|_| !faced.is_empty()) else {
         let words = instrument.words();
-        let reach = if reach_mm.is_finite() { format!(" of {reach_mm} mm") } else { String::new() };
+        let unit = passes.first().map(Pass::unit).unwrap_or_default();
+        let reach = || format!(" of {} {}", unit.of(reach_mm), unit.name());
+        let reach = if reach_mm.is_finite() { reach() } else { String::new() };
         let found = format!("a {words}{reach} reaches no two walls of this cut that face each other square to X or Y");
         return Err(V007.error(found, "two walls that an instrument fits between, or around").into());
     };
@@ -181,13 +186,14 @@ pub fn plan_dimensions(
         let Some(best) = (0..left.len()).min_by(|a, b| left[*a].total_cmp(&left[*b])) else { break };
         let Candidate { planned, row } = candidates.swap_remove(best);
         let after = known.after_all(&[row.into()]);
-        let why = reason::tells([&known, &after], [0.0; 2], &prior, Unit::Millimetre);
+        let why = reason::tells([&known, &after], [0.0; 2], &prior, pass.unit());
         dimensions.push(PlannedDimension { why, ..planned });
         known = after;
     }
     progress(1.0);
     Ok(DimensionPlan {
         dimensions,
+        unit: pass.unit(),
         instrument: instrument.name(),
         uncertainty_mm: mm(uncertainty),
         wall_sigma_mm: [before, sigma(&known)],

@@ -114,12 +114,14 @@ pub(super) fn heights(
             };
             return Ok((over_several.iter().enumerate().map(height).collect(), None));
         }
+        let (unit, name) = (pass.unit(), pass.unit().name());
+        let [ball, depth, floor, top] =
+            [2.0 * radius, depth, settings.floor_clearance, below_top].map(|mm| unit.of(mm));
         return Err(V002
             .error(
-                format!("a ball of {} mm has no room in an engaged depth of {depth} mm", 2.0 * radius),
+                format!("a ball of {ball} {name} has no room in an engaged depth of {depth} {name}"),
                 format!(
-                    "its radius + {} mm above the floor + {below_top} mm below the upper end within the depth",
-                    settings.floor_clearance
+                    "its radius + {floor} {name} above the floor + {top} {name} below the upper end within the depth"
                 ),
             )
             .into());

@@ -48,9 +48,10 @@ impl PartProgram {
             })
             .map_err(|error| InputError::of_program(&pass.program, &error))?;
         if local != [0; 3] {
-            let [x, y, z] = local.map(|nm| nm as f64 / 1e6);
+            let (unit, name) = (pass.unit(), pass.unit().name());
+            let [x, y, z] = local.map(|nm| unit.of(nm as f64 / 1e6));
             return Err(V006.error(
-                format!("G52 or G92 has shifted the origin by X{x} Y{y} Z{z} mm when line {first} is cut"),
+                format!("G52 or G92 has shifted the origin by X{x} Y{y} Z{z} {name} when line {first} is cut"),
                 "a contour cut in a work offset alone: a verification program changes no origin",
             ));
         }

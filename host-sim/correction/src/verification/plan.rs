@@ -264,11 +264,12 @@ pub fn plan_every(passes: &[Pass], settings: &Settings, progress: &mut dyn FnMut
         let own = mine.map(|(_, place)| Place { contour: contour.clone(), ..place.clone() }).collect();
         plans.push(Plan::of(wall.setup, wall.pass, settings, own));
     }
+    let unit = passes.first().map(Pass::unit).unwrap_or_default();
     let Some(mut joint) = Plan::joint(plans) else { return Err(Failure::Internal("a plan of no contour".to_owned())) };
     joint.warnings.extend(warnings);
     let mut plan =
         Plan { kept_off, unknowns: reason::unknowns(&chosen.known, &prior), wall_sigma_mm: chosen.wall_sigma, ..joint };
-    plan.warnings.extend(plan_warnings(&plan, law));
+    plan.warnings.extend(plan_warnings(&plan, law, unit));
     progress(1.0);
     Ok(plan)
 }
@@ -332,22 +333,25 @@ const BALLS_MM: [f64; 7] = [6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0];
 const REACHED: (f64, f64) = (0.4, 0.6);
 
 /// The ball that would touch more of the height, where that of the job touches the upper part of the wall only.
-fn smaller_ball(plan: &Plan, spread_mm: f64, depth_mm: f64) -> Option<String> {
+fn smaller_ball(plan: &Plan, spread_mm: f64, depth_mm: f64, unit: Unit) -> Option<String> {
     let more = |ball: f64| spread_mm + (plan.ball_mm - ball) / 2.0;
     let ball = BALLS_MM.into_iter().find(|ball| *ball < plan.ball_mm && more(*ball) >= REACHED.1 * depth_mm)?;
     let share = |height: f64| 100.0 * height / depth_mm;
     (spread_mm < REACHED.0 * depth_mm).then(|| {
         format!(
-            "a ball of {} mm touches {:.0} % of the height of this wall, the rest of it is the model's word; one of {ball} mm touches {:.0} %",
-            plan.ball_mm,
+            "a ball of {} {name} touches {:.0} % of the height of this wall, the rest of it is the model's word; one of {} {name} touches {:.0} %",
+            unit.of(plan.ball_mm),
             share(spread_mm),
-            share(more(ball))
+            unit.of(ball),
+            share(more(ball)),
+            name = unit.name()
         )
     })
 }
 
 /// What the user should know of a plan.
-fn plan_warnings(plan: &Plan, law: WallLaw) -> Vec<String> {
+fn plan_warnings(plan: &Plan, law: WallLaw, unit: Unit) -> Vec<String> {
+    let name = unit.name();
     let mut out = Vec::new();
     // Several contours have as many more as each of them needs.
     let (found, wanted) = (plan.places.len(), plan.settings.places as usize);
@@ -364,7 +368,8 @@ fn plan_warnings(plan: &Plan, law: WallLaw) -> Vec<String> {
     if after > TELLING.0 && after > TELLING.1 * before {
         let hidden: Vec<&str> = plan.unknowns.iter().filter(|u| !u.observable).map(|u| u.words).collect();
         out.push(format!(
-            "these touches leave the wall uncertain by {after:.4} mm (one sigma); they hardly tell: {}",
+            "these touches leave the wall uncertain by {:.4} {name} (one sigma); they hardly tell: {}",
+            unit.of(after),
             hidden.join(", ")
         ));
     }
@@ -377,10 +382,11 @@ fn plan_warnings(plan: &Plan, law: WallLaw) -> Vec<String> {
     // Over less than that nothing bends that would matter.
     if law == WallLaw::Helical && plan.most_heights() > 1 && spread < 1.0 && depth > 2.5 {
         out.push(format!(
-            "the heights lie within {spread:.2} mm: bending is hardly seen; a smaller ball reaches lower"
+            "the heights lie within {:.2} {name}: bending is hardly seen; a smaller ball reaches lower",
+            unit.of(spread)
         ));
     }
-    out.extend(smaller_ball(plan, spread, depth).filter(|_| law == WallLaw::Helical && plan.most_heights() > 1));
+    out.extend(smaller_ball(plan, spread, depth, unit).filter(|_| law == WallLaw::Helical && plan.most_heights() > 1));
     if plan.settings.free_width.is_some() {
         out.push("--free-width is taken on trust: nothing else than the contour's wall is known".to_owned());
     }

@@ -6,6 +6,7 @@ use truepath_core::cut::Path;
 use truepath_core::job::Probe;
 use truepath_core::units::Position;
 use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::length::Unit;
 use truepath_ground::units::{float, mm};
 use truepath_job::pass::Pass;
 
@@ -62,7 +63,7 @@ impl ProbingSetup {
         let ball = Ball { radius: mm(probe.ball_diameter) / 2.0, clearance };
         let free = settings.free_width.unwrap_or(free);
         if ball.width() > free + 1e-9 {
-            return Err(no_width(ball, free, settings).into());
+            return Err(no_width(ball, free, settings, pass.unit()).into());
         }
         let safe_z_mm = safe_z(pass, settings, &program)?;
         Ok(Self { program, probe, heights, heights_why, ball, safe_z_mm })
@@ -154,13 +155,15 @@ fn safe_z(pass: &Pass, settings: &Settings, program: &PartProgram) -> Result<f64
     }
 }
 
-fn no_width(ball: Ball, free: f64, settings: &Settings) -> InputError {
+fn no_width(ball: Ball, free: f64, settings: &Settings, unit: Unit) -> InputError {
+    let (free, name) = (unit.of(free), unit.name());
     let (found, help) = if settings.free_width.is_some() {
         (format!("--free-width {free}"), "use a smaller ball, or a smaller --clearance")
     } else {
-        (format!("the pass has cleared {free} mm before the wall, the cutter's diameter"), V003.remedy)
+        (format!("the pass has cleared {free} {name} before the wall, the cutter's diameter"), V003.remedy)
     };
-    let expected = format!("{} mm: the ball of {} mm and its clearance", ball.width(), 2.0 * ball.radius);
+    let expected = [ball.width(), 2.0 * ball.radius].map(|mm| unit.of(mm));
+    let expected = format!("{} {name}: the ball of {} {name} and its clearance", expected[0], expected[1]);
     InputError::new(V003, found, expected, help)
 }
 

@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 
 use truepath_ground::diagnostics::InputError;
+use truepath_ground::length;
 
 use crate::codes::V001;
 
@@ -19,23 +20,26 @@ pub struct Settings {
     /// contact ratio].
     #[arg(long, value_name = "N")]
     pub heights: Option<u32>,
-    /// Half the width of the tolerance of the wall at every height, mm, which asks for its profile; without it that of `[part]`.
-    #[arg(long, value_name = "MM")]
+    /// Half the width of the tolerance of the wall at every height, mm, or with its unit (0.0005in, 12um), which asks
+    /// for its profile; without it that of `[part]`.
+    #[arg(long, value_name = "LENGTH", value_parser = length::flag)]
     pub tolerance: Option<f64>,
-    /// From the ball's surface to the nominal wall where a touch begins, mm.
-    #[arg(long, value_name = "MM", default_value_t = Settings::default().clearance)]
+    /// From the ball's surface to the nominal wall where a touch begins, mm, or with its unit (0.1in).
+    #[arg(long, value_name = "LENGTH", value_parser = length::flag, default_value_t = Settings::default().clearance)]
     pub clearance: f64,
-    /// How far beyond the nominal wall a touch is searched, mm.
-    #[arg(long, value_name = "MM", default_value_t = Settings::default().overtravel)]
+    /// How far beyond the nominal wall a touch is searched, mm, or with its unit (0.1in).
+    #[arg(long, value_name = "LENGTH", value_parser = length::flag, default_value_t = Settings::default().overtravel)]
     pub overtravel: f64,
-    /// From the ball's lowest point to the floor, mm.
-    #[arg(long, value_name = "MM", default_value_t = Settings::default().floor_clearance)]
+    /// From the ball's lowest point to the floor, mm, or with its unit (0.1in).
+    #[arg(long, value_name = "LENGTH", value_parser = length::flag, default_value_t = Settings::default().floor_clearance)]
     pub floor_clearance: f64,
-    /// Width that is free before the wall, mm [default: the cutter's diameter, which the pass has cleared].
-    #[arg(long, value_name = "MM")]
+    /// Width that is free before the wall, mm, or with its unit (0.1in) [default: the cutter's diameter, which the
+    /// pass has cleared].
+    #[arg(long, value_name = "LENGTH", value_parser = length::flag)]
     pub free_width: Option<f64>,
-    /// Z for moves between places, mm [default: 50 mm above the engaged depth, and no lower than the part's program moves].
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    /// Z for moves between places, mm, or with its unit (0.1in) [default: 50 mm above the engaged depth, and no lower
+    /// than the part's program moves].
+    #[arg(long, value_name = "LENGTH", value_parser = length::flag, allow_negative_numbers = true)]
     pub safe_z: Option<f64>,
     /// Feed of moves that should touch nothing, mm/min.
     #[arg(long, value_name = "MM/MIN", default_value_t = Settings::default().feed_move)]

@@ -138,7 +138,8 @@ fn before(pass: &Pass, settings: &Settings, margin: f64) -> Result<(ProbingSetup
     let most = 2.0 * mm(pass.core.setup.radius) - expected;
     if !(margin > 0.0 && margin < most) {
         let found = format!("--stock-margin is {margin}");
-        let expected = format!("more than 0, less than {most} mm: the cutter's diameter without the allowance");
+        let (most, name) = (pass.unit().of(most), pass.unit().name());
+        let expected = format!("more than 0, less than {most} {name}: the cutter's diameter without the allowance");
         return Err(InputError::new(V001, found, expected, "give --stock-margin a value in this range").into());
     }
     let stock = StockWall { expected, largest: expected + margin };

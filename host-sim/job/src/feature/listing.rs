@@ -1,7 +1,7 @@
 //! What was found in a program, for people and for machines.
 
 use truepath_core::gcode::{Found, Idle, LineRange, Role};
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Said, Unit};
 use truepath_ground::units::mm;
 
 /// Contours that were found by search are called by their number.
@@ -29,7 +29,14 @@ pub struct Row {
     /// Whether it ends where it starts.
     pub closed: bool,
     /// Why it has its role.
-    pub why: String,
+    #[serde(serialize_with = "in_mm")]
+    #[schemars(with = "String")]
+    pub why: Said,
+}
+
+/// Files are in millimetres, their words too.
+fn in_mm<S: serde::Serializer>(said: &Said, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(said.in_unit(Unit::Millimetre))
 }
 
 /// One pass of the feature.
@@ -75,22 +82,25 @@ pub struct FeatureSummary {
 pub(super) fn rows(runs: &[Found], allowance_mm: f64) -> Vec<Row> {
     let row = |found: &Found| {
         let (role, contour, level, why) = match found.role {
-            Role::Idle(Idle::Travel) => ("travel", None, None, "a move between cuts, above all that is cut".to_owned()),
+            Role::Idle(Idle::Travel) => ("travel", None, None, "a move between cuts, above all that is cut".into()),
             Role::Idle(Idle::Facing) => {
-                ("facing", None, None, "to and fro nearer than the cutter is wide, above all else".to_owned())
+                ("facing", None, None, "to and fro nearer than the cutter is wide, above all else".into())
             }
-            Role::OtherTool => ("other tool", None, None, "cut with another tool".to_owned()),
+            Role::OtherTool => ("other tool", None, None, "cut with another tool".into()),
             Role::Rough { nearer, gap, parallel } => {
                 let role = if parallel && mm(gap) <= 1.2 * allowance_mm { "semi" } else { "rough" };
                 let kind = if parallel { "all along" } else { "or more" };
                 let by = runs.get(nearer).map_or_else(String::new, |n| lines_of(n.run.lines));
-                (role, None, None, format!("{:.3} mm {kind} farther from the wall than {by}", mm(gap)))
+                let far = |unit: Unit| {
+                    format!("{:.3} {} {kind} farther from the wall than {by}", unit.of(mm(gap)), unit.name())
+                };
+                (role, None, None, Said::of(far))
             }
             Role::Finish { contour, level } => {
-                ("finish", Some(contour), Some(level), "no other run takes its wall away".to_owned())
+                ("finish", Some(contour), Some(level), "no other run takes its wall away".into())
             }
             Role::Spring { contour, level } => {
-                ("spring", Some(contour), Some(level), "the same path at the same height again".to_owned())
+                ("spring", Some(contour), Some(level), "the same path at the same height again".into())
             }
         };
         Row {
@@ -192,7 +202,7 @@ pub fn listing(feature: &FeatureSummary, unit: Unit) -> String {
         text += &format!("  other features, each a correction of its own: {}\n", feature.other_features.join(", "));
     }
     for row in &feature.candidates {
-        text += &format!("  {}  {}\n", row.short(unit), row.why);
+        text += &format!("  {}  {}\n", row.short(unit), row.why.in_unit(unit));
     }
     let levels = feature.finishing().count();
     text += &format!("pass {} of {levels}", feature.pass);

@@ -67,8 +67,9 @@ pub struct PartFlags {
     /// Serial number of the part, in place of part.serial of the job.
     #[arg(long, value_name = "TEXT")]
     pub serial: Option<String>,
-    /// Half the width of the tolerance of the wall, mm, in place of the limits of the job.
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    /// Half the width of the tolerance of the wall, mm, or with its unit (0.0005in, 12um), in place of the limits of
+    /// the job.
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     pub tolerance: Option<String>,
     /// When the part was measured, for the report; without it none is named.
     #[arg(long, value_name = "TEXT")]
@@ -95,11 +96,16 @@ impl PartFlags {
         let tolerance = match &self.tolerance {
             None => part.tolerance,
             Some(text) => {
-                let half = Decimal::parse(text).filter(|d| HALF_WIDTH.admits(*d)).map(Decimal::as_mm);
+                let half = Decimal::length(text).filter(|d| HALF_WIDTH.admits(*d)).map(Decimal::as_mm);
                 let half = half.ok_or_else(|| {
                     let found = format!("--tolerance on the command line is {text:?}");
                     let expected = format!("half the width of the tolerance, {}", HALF_WIDTH.phrase());
-                    InputError::new(C001, found, expected, "write --tolerance 0.02 for ±0.02 mm")
+                    InputError::new(
+                        C001,
+                        found,
+                        expected,
+                        "write --tolerance 0.02 for ±0.02 mm, 0.0008in for ±0.0008 in",
+                    )
                 })?;
                 Some(Tolerance { lower: -half, upper: half, from_command_line: true })
             }

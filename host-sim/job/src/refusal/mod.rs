@@ -5,6 +5,7 @@ use truepath_core::image::MAX_CLAMP_NM;
 use truepath_core::job::JobError;
 use truepath_core::units::Offset;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 
 use crate::job::JobFile;
@@ -25,6 +26,8 @@ pub struct Inputs<'a> {
     pub program: &'a Source,
     /// The probe file, once there is one.
     pub probe: Option<&'a Source>,
+    /// The unit in which it is said.
+    pub unit: Unit,
 }
 
 impl Inputs<'_> {
@@ -40,7 +43,7 @@ impl Inputs<'_> {
                 self.probe.map_or_else(|| Failure::Internal(error.to_string()), |file| of_probe(file, &error).into())
             }
             JobError::OffTheWall { line, .. } | JobError::NoContact { line, .. } => {
-                let error = of_contacts(error, self.job);
+                let error = of_contacts(error, self.job, self.unit);
                 match self.probe {
                     Some(file) => error.at(file, line_span(file, line)).into(),
                     None => error.into(),
@@ -52,11 +55,11 @@ impl Inputs<'_> {
             JobError::ToolsDiffer { .. } => at_job(of_job(error), "tool.number"),
             JobError::NoTool => at_job(of_job(error), "tool"),
             JobError::Flutes => at_job(of_job(error), "cut.axial_depth_mm"),
-            JobError::Unfit { .. } => at_job(of_correction(error), "probe.ball_diameter_mm"),
+            JobError::Unfit { .. } => at_job(of_correction(error, self.unit), "probe.ball_diameter_mm"),
             JobError::BeyondClamp { .. } | JobError::NoFeedWindow { .. } => {
-                at_job(of_correction(error), "correct.clamp_mm")
+                at_job(of_correction(error, self.unit), "correct.clamp_mm")
             }
-            JobError::TooManyNodes { .. } | JobError::Image(_) => at_job(of_correction(error), "correct"),
+            JobError::TooManyNodes { .. } | JobError::Image(_) => at_job(of_correction(error, self.unit), "correct"),
             JobError::Range { .. } | JobError::NoProbe => at_job(of_job(error), ""),
             JobError::Compact | JobError::Full { .. } => Failure::Internal(error.to_string()),
         }
@@ -112,16 +115,16 @@ fn of_job(error: &JobError) -> InputError {
 }
 
 /// A correction that must not be made.
-fn of_correction(error: &JobError) -> InputError {
-    let code = error.code();
+fn of_correction(error: &JobError, unit: Unit) -> InputError {
+    let (code, name) = (error.code(), unit.name());
     match *error {
         JobError::Unfit { s, measured, fitting, .. } => InputError::of_core(
             code,
             format!(
-                "{error}; at s = {:.2} mm {:.4} mm were measured, {:.4} mm would fit",
-                mm(s),
-                mm(measured),
-                mm(fitting)
+                "{error}; at s = {:.2} {name} {:.4} {name} were measured, {:.4} {name} would fit",
+                unit.of(mm(s)),
+                unit.of(mm(measured)),
+                unit.of(mm(fitting))
             ),
             "probe points of one part cut by this program",
             "check ball_diameter_mm, allowance_mm, the side of the wall and that the probed part is the one of this program",
@@ -129,10 +132,10 @@ fn of_correction(error: &JobError) -> InputError {
         JobError::BeyondClamp { reach, clamp, at } => InputError::of_core(
             code,
             format!(
-                "the correction reaches {:.3} mm at X{:.3} Y{:.3}, beyond clamp_mm = {}",
-                mm(reach),
-                at.x.nm() as f64 / 1e6,
-                at.y.nm() as f64 / 1e6,
+                "the correction reaches {:.3} {name} at X{:.3} Y{:.3}, beyond clamp_mm = {}",
+                unit.of(mm(reach)),
+                unit.of(at.x.nm() as f64 / 1e6),
+                unit.of(at.y.nm() as f64 / 1e6),
                 mm(clamp)
             ),
             "a correction inside the clamp",
@@ -141,8 +144,8 @@ fn of_correction(error: &JobError) -> InputError {
         JobError::NoFeedWindow { reach, clamp } => InputError::of_core(
             code,
             format!(
-                "at 110 % of the programmed feed the correction reaches {:.3} mm, beyond clamp_mm = {}",
-                mm(reach),
+                "at 110 % of the programmed feed the correction reaches {:.3} {name}, beyond clamp_mm = {}",
+                unit.of(mm(reach)),
                 mm(clamp)
             ),
             "a correction that leaves room for a feed override of 110 %",
@@ -151,7 +154,10 @@ fn of_correction(error: &JobError) -> InputError {
         JobError::TooManyNodes { limit, .. } => InputError::of_core(
             code,
             error.to_string(),
-            format!("at most {limit} nodes: about {:.1} m of contour at 0.1 mm", f64::from(limit) / 10_000.0),
+            format!(
+                "at most {limit} nodes: about {:.1} m of contour, ten to a millimetre",
+                f64::from(limit) / 10_000.0
+            ),
             "cut the contour in two programs, or correct in the program instead (route = \"program\")",
         ),
         _ => InputError::of_core(code, error.to_string(), "", "correct in the program instead (route = \"program\")"),

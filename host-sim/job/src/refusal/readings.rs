@@ -4,6 +4,7 @@ use truepath_core::job::{JobError, REACH};
 use truepath_core::probe::{ProbeError, Rejected, Suspicion};
 use truepath_core::units::Offset;
 use truepath_ground::diagnostics::{InputError, Source};
+use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 
 use crate::job::JobFile;
@@ -21,22 +22,25 @@ pub(super) fn of_probe(file: &Source, error: &ProbeError) -> InputError {
 }
 
 /// Readings that do not belong to the wall of the job.
-pub(super) fn of_contacts(error: &JobError, job: &JobFile) -> InputError {
+pub(super) fn of_contacts(error: &JobError, job: &JobFile, unit: Unit) -> InputError {
     match error {
         JobError::OffTheWall { suspicion, .. } => {
-            let (guess, help) = suspected(*suspicion);
+            let (guess, help) = suspected(*suspicion, unit);
             let found = match suspicion {
                 Suspicion::Normals => format!("most readings are on the wall, but {guess}"),
-                _ => format!("most readings are farther than {} mm from the nominal wall; {guess}", mm(REACH)),
+                _ => {
+                    let (reach, name) = (unit.of(mm(REACH)), unit.name());
+                    format!("most readings are farther than {reach} {name} from the nominal wall; {guess}")
+                }
             };
             InputError::of_core(error.code(), found, "readings on the wall of this contour", help)
         }
         JobError::NoContact { reason, tip, .. } => {
             let tip = tip.nm() as f64 / 1e6;
-            let top = tip + mm(job.numbers.cut.axial_depth);
+            let [tip, top] = [tip, tip + mm(job.numbers.cut.axial_depth)].map(|z| unit.of(z));
             InputError::of_core(
                 error.code(),
-                format!("no reading can be used; the first one is {}", why(reason)),
+                format!("no reading can be used; the first one is {}", why(reason, unit)),
                 format!("ball centres between Z {tip} and Z {top} beside the wall"),
                 "probe within the engaged depth; check axial_depth_mm and z_reference in the job",
             )
@@ -46,7 +50,7 @@ pub(super) fn of_contacts(error: &JobError, job: &JobFile) -> InputError {
 }
 
 /// What may be wrong with the readings, and what to do about it.
-pub(crate) fn suspected(suspicion: Suspicion) -> (String, &'static str) {
+pub(crate) fn suspected(suspicion: Suspicion, unit: Unit) -> (String, &'static str) {
     let help = match suspicion {
         Suspicion::Inches => {
             "the file is in inches and was read in millimetres: convert it, say so in [probe] (unit of columns), or probe with the program's unit active"
@@ -83,9 +87,10 @@ pub(crate) fn suspected(suspicion: Suspicion) -> (String, &'static str) {
     };
     let words = match suspicion {
         Suspicion::Shifted { by: [x, y] } => format!(
-            "they fit when about X {:.1} and Y {:.1} mm are taken off all of them: they are in another frame",
-            mm(x) + 0.0,
-            mm(y) + 0.0
+            "they fit when about X {:.1} and Y {:.1} {} are taken off all of them: they are in another frame",
+            unit.of(mm(x) + 0.0),
+            unit.of(mm(y) + 0.0),
+            unit.name()
         ),
         _ => suspicion.to_string(),
     };
@@ -93,12 +98,13 @@ pub(crate) fn suspected(suspicion: Suspicion) -> (String, &'static str) {
 }
 
 /// Why a reading is set aside.
-pub fn why(reason: &Rejected) -> String {
+pub fn why(reason: &Rejected, unit: Unit) -> String {
+    let name = unit.name();
     match reason {
         Rejected::OffTheWall { distance } if *distance == Offset::MAX => "beyond the ends of the contour".to_owned(),
-        Rejected::OffTheWall { distance } => format!("{:.3} mm from the nominal wall", mm(*distance)),
+        Rejected::OffTheWall { distance } => format!("{:.3} {name} from the nominal wall", unit.of(mm(*distance))),
         Rejected::OffHeight { height } => {
-            format!("{:.3} mm above the cutter's tip, outside the engaged depth", mm(*height))
+            format!("{:.3} {name} above the cutter's tip, outside the engaged depth", unit.of(mm(*height)))
         }
         Rejected::Missed => "a miss: the probe did not touch".to_owned(),
         Rejected::Superseded => "an approach: the next touch is of the same place and counts".to_owned(),

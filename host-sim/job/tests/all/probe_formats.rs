@@ -2,6 +2,7 @@
 
 use truepath_core::units::Offset;
 use truepath_ground::diagnostics::Form;
+use truepath_ground::length::Unit;
 use truepath_job::refusal::why;
 
 use crate::probe_files::{MACHINE, SURFACE, file, named, read, replaced};
@@ -54,7 +55,7 @@ fn the_same_points_give_the_same_contacts_in_every_format() {
 fn misses_and_first_touches_are_set_aside_with_their_line() {
     let aside = |name: &str, format: &str| {
         let measurement = read(&named(format), "6.0", file(name)).unwrap();
-        measurement.rejected.iter().map(|a| (a.line, why(&a.reason))).collect::<Vec<_>>()
+        measurement.rejected.iter().map(|a| (a.line, why(&a.reason, Unit::Millimetre))).collect::<Vec<_>>()
     };
     let miss = || "a miss: the probe did not touch".to_owned();
     assert_eq!(aside("linuxcnc-log.txt", "linuxcnc-log"), [(11, miss())]);
@@ -79,7 +80,7 @@ fn a_point_that_stands_twice_in_the_file_counts_once() {
     let repeats: Vec<_> = measurement
         .rejected
         .iter()
-        .filter(|a| why(&a.reason).starts_with("the same point as in line "))
+        .filter(|a| why(&a.reason, Unit::Millimetre).starts_with("the same point as in line "))
         .map(|a| a.line)
         .collect();
     assert_eq!(repeats, [7, 8, 9, 10, 11]);
@@ -92,7 +93,7 @@ fn a_normal_of_another_wall_sets_its_point_aside() {
     let measurement = read(&named("columns"), "6.0", bytes).unwrap();
     assert_eq!(measurement.contacts.len(), 4);
     assert_eq!(
-        why(&measurement.rejected[0].reason),
+        why(&measurement.rejected[0].reason, Unit::Millimetre),
         "its normal in the file is more than 30 degrees off that of the nearest wall"
     );
 }

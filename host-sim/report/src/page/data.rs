@@ -6,6 +6,7 @@
 //! (a [`Figure`] that is not is not made, see [`Figure::of`]); in columns there may be holes.
 
 use serde::Serialize;
+use truepath_ground::length::{Said, Unit};
 
 use super::{Contour, Heights, Inspected, JobFacts, Limits, Outcome, Outlines, Outlook, Point, Program};
 use crate::next::Next;
@@ -34,6 +35,9 @@ pub struct Page {
     pub title: String,
     /// Program that made the page, with its version.
     pub by: String,
+    /// `in` of a program in inches: the unit in which the page opens. All numbers of it are in mm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unit: Option<&'static str>,
     /// The part program.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub program: Option<Program>,
@@ -66,7 +70,7 @@ pub struct Page {
     pub next: Option<Next>,
     /// How the wall comes out, in a sentence: mean over the height, and the worst at any height.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub told: Option<String>,
+    pub told: Option<Said>,
     /// Head figures.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub results: Vec<Figure>,
@@ -84,7 +88,7 @@ pub struct Page {
     pub inspected: Option<Inspected>,
     /// What the user should know.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Said>,
 }
 
 impl Page {
@@ -95,6 +99,7 @@ impl Page {
             kind,
             title: title.into(),
             by: format!("truepath {}", env!("CARGO_PKG_VERSION")),
+            unit: None,
             program: None,
             job: None,
             contour: None,
@@ -113,6 +118,12 @@ impl Page {
             inspected: None,
             warnings: Vec::new(),
         }
+    }
+
+    /// The same, opened in the unit of the program.
+    #[must_use]
+    pub fn told_in(self, unit: Unit) -> Self {
+        Self { unit: (unit == Unit::Inch).then_some(unit.name()), ..self }
     }
 }
 
@@ -139,7 +150,7 @@ pub struct Figure {
     pub unit: &'static str,
     /// A word on it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub note: Option<String>,
+    pub note: Option<Said>,
 }
 
 impl Figure {
@@ -155,7 +166,7 @@ impl Figure {
 
     /// The same with a word on it.
     #[must_use]
-    pub fn noted(mut self, note: impl Into<String>) -> Self {
+    pub fn noted(mut self, note: impl Into<Said>) -> Self {
         self.note = Some(note.into());
         self
     }
@@ -179,5 +190,5 @@ pub struct Verdict {
     /// How it came out.
     pub state: State,
     /// In a sentence.
-    pub text: String,
+    pub text: Said,
 }

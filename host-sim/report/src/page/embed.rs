@@ -98,7 +98,7 @@ mod tests {
         let hidden = [("\u{0}\u{8}\u{c}\r", "␀␈␌␍"), ("\u{1b}]0;a\u{7}\u{9b}1m\u{202e}", "␛]0;a␇\u{fffd}1m\u{fffd}")];
         for (text, shown) in shown.chain(hidden) {
             let mut page = Page::new(Kind::Correct, text);
-            page.warnings.push(text.to_owned());
+            page.warnings.push(text.into());
             let file = render(&page).unwrap();
             let read = data(&file);
             assert_eq!(read["title"], shown);

@@ -1,6 +1,7 @@
 //! The block on the job: tool, cut, stock, and anything else worth a line.
 
 use serde::Serialize;
+use truepath_ground::length::Said;
 
 /// Tool, cut and set-up.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -75,12 +76,12 @@ pub struct Fact {
     /// What it is.
     pub name: String,
     /// Its value, in words.
-    pub value: String,
+    pub value: Said,
 }
 
 impl Fact {
     /// A line.
-    pub fn new(name: impl Into<String>, value: impl Into<String>) -> Self {
+    pub fn new(name: impl Into<String>, value: impl Into<Said>) -> Self {
         Self { name: name.into(), value: value.into() }
     }
 }

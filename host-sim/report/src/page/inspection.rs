@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use truepath_correction::inspection::Coverage;
+use truepath_ground::length::Said;
 use truepath_job::job::PartNames;
 
 use crate::InspectSummary;
@@ -14,7 +15,7 @@ pub struct Inspected {
     /// What the report rests on.
     pub files: Vec<InputFile>,
     /// Decision rule and what the verdict does not cover.
-    pub statements: Vec<String>,
+    pub statements: Vec<Said>,
     /// Which stretches no point speaks for.
     pub coverage: Option<Coverage>,
 }

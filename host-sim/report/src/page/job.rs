@@ -1,6 +1,7 @@
 //! The job of a pass, as the page tells it.
 
 use truepath_core::geometry::Side;
+use truepath_ground::length::Said;
 use truepath_ground::units::{float, mm, rounded};
 use truepath_job::pass::{Pass, milling_name};
 
@@ -27,11 +28,23 @@ impl JobFacts {
         let one_feed = least >= most;
         let mut facts = Vec::new();
         if !one_feed {
-            facts.push(Fact::new("feed", format!("{} to {} mm/min", rounded(least, 3), rounded(most, 3))));
+            facts.push(Fact::new(
+                "feed",
+                Said::of(|unit| {
+                    let [least, most] = [least, most].map(|feed| unit.of(rounded(feed, 3)));
+                    format!("{least} to {most} {}/min", unit.name())
+                }),
+            ));
         }
-        facts.push(Fact::new("contour", format!("{:.3} mm long", mm(pass.core.contour.length))));
+        facts.push(Fact::new(
+            "contour",
+            Said::of(|unit| format!("{:.3} {} long", unit.of(mm(pass.core.contour.length)), unit.name())),
+        ));
         if let Some(probe) = &pass.job.numbers.probe {
-            facts.push(Fact::new("probe ball", format!("⌀ {} mm", mm(probe.ball_diameter))));
+            facts.push(Fact::new(
+                "probe ball",
+                Said::of(|unit| format!("⌀ {} {}", unit.of(mm(probe.ball_diameter)), unit.name())),
+            ));
         }
         if pass.surface.is_some() {
             facts.push(Fact::new("stock", "measured surface; the allowance is its median"));

@@ -4,6 +4,7 @@ use serde::Serialize;
 use truepath_core::identify::Observation;
 use truepath_core::probe::Contact;
 use truepath_correction::inspection::PointVerdict;
+use truepath_ground::length::Said;
 use truepath_ground::units::{float, rounded};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
@@ -32,7 +33,7 @@ pub struct Point {
     pub status: PointStatus,
     /// Why, where there is something to say.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub reason: Option<String>,
+    pub reason: Option<Said>,
     /// Arc length of the contour.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub s_mm: Option<f64>,
@@ -109,7 +110,7 @@ fn point(row: Row, depth_mm: f64) -> Point {
     Point {
         line: row.line,
         status: if row.error_mm.is_some() { PointStatus::Used } else { PointStatus::Aside },
-        reason: (!row.reason.is_empty()).then_some(row.reason),
+        reason: row.reason,
         s_mm: row.s_mm,
         x_mm: row.x_mm,
         y_mm: row.y_mm,

@@ -4,7 +4,7 @@
 //! of the others, in the words of `feature` in `summary.json`.
 
 use serde::Serialize;
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Said, Unit};
 use truepath_job::feature::{FeatureSummary, Row};
 use truepath_job::pass::Pass;
 
@@ -28,7 +28,7 @@ pub struct Program {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Chosen {
     /// The cut that is shown, in a few words.
-    pub shown: String,
+    pub shown: Said,
     /// Why that one.
     pub why: String,
     /// Names of the features that this page is not about.
@@ -47,6 +47,9 @@ pub struct ProgramCut {
     /// The fields of `feature.candidates` in `summary.json`.
     #[serde(flatten)]
     pub row: Row,
+    /// Why it has its role, in inches, where that is said in other words.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why_in: Option<String>,
     /// What became of it.
     pub became: Became,
 }
@@ -87,9 +90,12 @@ impl Chosen {
             _ if corrects => Became::Unchanged,
             _ => Became::Elsewhere,
         };
-        let shown = feature.in_words(Unit::Millimetre);
-        let cuts: Vec<ProgramCut> =
-            feature.candidates.into_iter().map(|row| ProgramCut { became: became(&row), row }).collect();
+        let shown = Said::of(|unit| feature.in_words(unit));
+        let cut = |row: Row| {
+            let [mm, inches] = [Unit::Millimetre, Unit::Inch].map(|unit| row.why.in_unit(unit));
+            ProgramCut { why_in: (inches != mm).then(|| inches.to_owned()), became: became(&row), row }
+        };
+        let cuts: Vec<ProgramCut> = feature.candidates.into_iter().map(cut).collect();
         let all = cuts.len();
         // Where there are too many, those that make a wall come before the others.
         let mut others = MOST_CUTS.saturating_sub(cuts.iter().filter(|cut| cut.makes_wall()).count());

@@ -6,7 +6,7 @@ use truepath_correction::correct::CorrectedPass;
 use truepath_correction::summary::CorrectSummary;
 use truepath_correction::surface::expected::Surfaces;
 use truepath_ground::diagnostics::Failure;
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Said, Unit};
 use truepath_ground::units::float;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
@@ -84,7 +84,7 @@ pub(super) fn of_correction(
         cut: false,
     });
     page.next = Some(after_correction(&done.summary, file(pass.job.source().name()), None));
-    page.told = Some(done.summary.floor.line(Unit::Millimetre, &done.summary.surface.after));
+    page.told = Some(Said::of(|unit| done.summary.floor.line(unit, &done.summary.surface.after)));
     page.results = figures(&done.summary, &["largest error without correction", "largest error with it"]);
     page.warnings = page_warnings(
         pass,
@@ -109,11 +109,11 @@ pub(super) fn figures(s: &CorrectSummary, largest: &[impl AsRef<str>; 2]) -> Vec
     let [without, with] = largest.each_ref().map(AsRef::as_ref);
     let used =
         format!("{} points used, {} outlying, {} set aside", s.points_used, s.points_outlying, s.points_rejected);
-    let at = format!("at s = {:.1} mm", s.max_error_after_s_mm);
-    let sigma = format!("largest {:.3}", s.max_sigma_mm);
+    let at = Said::of(|unit| format!("predicted, at s = {:.1} {}", unit.of(s.max_error_after_s_mm), unit.name()));
+    let sigma = Said::of(|unit| format!("largest {:.3}", unit.of(s.max_sigma_mm)));
     let figures = [
         Figure::mm(without, s.max_error_before_mm).map(|f| f.noted("predicted")),
-        Figure::mm(with, s.max_error_after_mm).map(|f| f.noted(format!("predicted, {at}"))),
+        Figure::mm(with, s.max_error_after_mm).map(|f| f.noted(at)),
         Figure::mm("standard deviation there", s.sigma_at_max_error_mm).map(|f| f.noted(sigma)),
         Figure::mm("left over the height", s.axial_form_error_mm).map(|f| f.noted("no X Y shift cures it")),
         Figure::mm("deepest cut at any height", s.worst_gouge_mm).map(|f| f.noted("predicted")),
@@ -129,11 +129,11 @@ fn facts(pass: &Pass, done: &CorrectedPass, of: Points) -> Vec<Fact> {
         Fact::new("law", format!("{}; the wall follows the {} force", s.law, s.wall_law)),
         Fact::new("error shown", shown(wanted.target, wanted.band, float(pass.core.setup.axial_depth))),
     ];
-    facts.push(Fact::new("expected", format!("{} (2 sigma)", s.surface.words(Unit::Millimetre))));
+    facts.push(Fact::new("expected", Said::of(|unit| format!("{} (2 sigma)", s.surface.words(unit)))));
     facts.extend(at_every_height(&s.surface));
     facts.push(Fact::new(
         "floor",
-        format!("{}; {}", s.floor.words(Unit::Millimetre), s.floor.next(Unit::Millimetre, &s.surface.after)),
+        Said::of(|unit| format!("{}; {}", s.floor.words(unit), s.floor.next(unit, &s.surface.after))),
     ));
     let route = match (&done.program, &done.image) {
         (Some(_), Some(_)) => "program and coprocessor",
@@ -151,7 +151,10 @@ fn facts(pass: &Pass, done: &CorrectedPass, of: Points) -> Vec<Fact> {
         }
     }
     if let Some(guard) = &s.guard {
-        facts.push(Fact::new("deepest cut allowed", format!("{:.3} mm", guard.max_gouge_mm)));
+        facts.push(Fact::new(
+            "deepest cut allowed",
+            Said::of(|unit| format!("{:.3} {}", unit.of(guard.max_gouge_mm), unit.name())),
+        ));
     }
     if let Some(feed) = s.feed.as_ref().filter(|_| done.schedule.is_some()) {
         let [low, high] = feed.used_percent;
@@ -167,22 +170,27 @@ fn facts(pass: &Pass, done: &CorrectedPass, of: Points) -> Vec<Fact> {
 /// What is expected of the whole wall, and what makes the error at its worst place.
 fn at_every_height(surface: &Surfaces) -> [Fact; 2] {
     let after = &surface.after;
-    let all = format!(
-        "95 % of the wall within {:.3} ± {:.3} mm (2 sigma), {:.3} mm without the correction",
-        after.p95_mm,
-        2.0 * after.p95_sigma_mm,
-        surface.before.p95_mm
-    );
-    [Fact::new("at every height", all), Fact::new("what makes the worst", after.worst_words(Unit::Millimetre))]
+    let all = Said::of(|unit| {
+        format!(
+            "95 % of the wall within {:.3} ± {:.3} {name} (2 sigma), {:.3} {name} without the correction",
+            unit.of(after.p95_mm),
+            unit.of(2.0 * after.p95_sigma_mm),
+            unit.of(surface.before.p95_mm),
+            name = unit.name()
+        )
+    });
+    let worst = Said::of(|unit| after.worst_words(unit));
+    [Fact::new("at every height", all), Fact::new("what makes the worst", worst)]
 }
 
 /// What the error along the contour is of.
-fn shown(target: Target, band: Band, depth_mm: f64) -> String {
+fn shown(target: Target, band: Band, depth_mm: f64) -> Said {
     let [from, to] =
         [band.from, band.to].map(|fraction| truepath_ground::units::rounded(float(fraction) * depth_mm, 4));
+    let band = |unit: Unit| format!("{} to {} {} above the tip", unit.of(from), unit.of(to), unit.name());
     match target {
-        Target::Mean => format!("mean over {from} to {to} mm above the tip"),
-        Target::Tip => "at the tip of the cutter".to_owned(),
-        Target::Minimax => format!("middle between largest and smallest, {from} to {to} mm above the tip"),
+        Target::Mean => Said::of(|unit| format!("mean over {}", band(unit))),
+        Target::Tip => "at the tip of the cutter".into(),
+        Target::Minimax => Said::of(|unit| format!("middle between largest and smallest, {}", band(unit))),
     }
 }

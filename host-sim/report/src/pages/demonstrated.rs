@@ -2,6 +2,7 @@
 
 use truepath_correction::correct::CorrectedPass;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Said;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_plant::{Milled, Score, judged_trim_mm};
@@ -44,30 +45,36 @@ pub fn demonstrated(
     }
     page.next = Some(after_demonstration());
     let profile = &done.summary.surface.after.profile;
-    page.told = Some(format!(
-        "cut: mean over the height {:.3} -> {:.3} mm; any height {:.3} -> {:.3} mm ({:.3} ± {:.3} expected)",
-        before.max_error_mm,
-        after.max_error_mm,
-        before.worst_height_mm,
-        after.worst_height_mm,
-        profile.profile_mm,
-        2.0 * profile.sigma_mm
-    ));
+    page.told = Some(Said::of(|unit| {
+        format!(
+            "cut: mean over the height {:.3} -> {:.3} {name}; any height {:.3} -> {:.3} {name} ({:.3} ± {:.3} expected)",
+            unit.of(before.max_error_mm),
+            unit.of(after.max_error_mm),
+            unit.of(before.worst_height_mm),
+            unit.of(after.worst_height_mm),
+            unit.of(profile.profile_mm),
+            unit.of(2.0 * profile.sigma_mm),
+            name = unit.name()
+        )
+    }));
     page.results = figures(before, after, done);
     // What was foretold of a part that has been cut is not its verdict.
     (page.tolerance_mm, page.verdict) = (None, None);
     if let Some(job) = &mut page.job {
         job.facts.retain(|fact| fact.name != "error shown");
-        let shown = format!(
-            "mean over the engaged depth; the {trim_mm} mm at both ends, where the cutter plunges and lifts, are not judged"
-        );
+        let shown = Said::of(|unit| {
+            let (trim, name) = (unit.of(trim_mm), unit.name());
+            format!(
+                "mean over the engaged depth; the {trim} {name} at both ends, where the cutter plunges and lifts, are not judged"
+            )
+        });
         job.facts.push(Fact::new("error shown", shown));
     }
     Ok(page)
 }
 
 fn figures(before: &Score, after: &Score, done: &CorrectedPass) -> Vec<Figure> {
-    let rms = |score: &Score| format!("cut, rms {:.3} mm", score.rms_error_mm);
+    let rms = |score: &Score| Said::of(|unit| format!("cut, rms {:.3} {}", unit.of(score.rms_error_mm), unit.name()));
     let s = &done.summary;
     let figures = [
         Figure::mm("largest error, first part", before.max_error_mm).map(|f| f.noted(rms(before))),

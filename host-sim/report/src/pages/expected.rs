@@ -7,6 +7,7 @@
 
 use truepath_core::units::Offset;
 use truepath_correction::correction::Correction;
+use truepath_ground::length::{Said, Unit};
 use truepath_ground::units::mm;
 use truepath_job::job::Tolerance;
 
@@ -37,31 +38,24 @@ fn verdict(limits: &Tolerance, correction: &Correction) -> Verdict {
         outside |= beyond(-spread) > Offset::ZERO;
         worst = worst.max(beyond(Offset::ZERO));
     }
-    let within = format!("{} to {} mm", signed(limits.lower), signed(limits.upper));
-    let (state, text) = if outside {
-        (
-            State::Fail,
+    let text = |unit: Unit| {
+        let name = unit.name();
+        let within = format!("{:+} to {:+} {name}", unit.of(mm(limits.lower)), unit.of(mm(limits.upper)));
+        if outside {
+            let by = unit.of(mm(worst));
             format!(
-                "predicted: somewhere the corrected wall is outside {within}, by up to {:.3} mm at some height",
-                mm(worst)
-            ),
-        )
-    } else if inside {
-        (
-            State::Open,
+                "predicted: somewhere the corrected wall is outside {within}, by up to {by:.3} {name} at some height"
+            )
+        } else if inside {
             format!(
                 "predicted: within {within} everywhere, at every height, with two standard deviations; the corrected part, measured, decides"
-            ),
-        )
-    } else {
-        let why = "within two standard deviations of a limit";
-        (State::Open, format!("predicted: somewhere {why} of {within}; more points tell (truepath probe --next)"))
+            )
+        } else {
+            let why = "within two standard deviations of a limit";
+            format!("predicted: somewhere {why} of {within}; more points tell (truepath probe --next)")
+        }
     };
-    Verdict { state, text }
-}
-
-fn signed(limit: Offset) -> String {
-    format!("{:+}", mm(limit))
+    Verdict { state: if outside { State::Fail } else { State::Open }, text: Said::of(text) }
 }
 
 #[cfg(test)]
@@ -118,7 +112,7 @@ mod tests {
     fn a_prediction_within_the_limits_stays_open_until_the_part_is_measured() {
         let verdict = verdict_of(&[(-8, 18), (0, 0)]);
         assert_eq!(verdict.state, State::Open);
-        assert!(verdict.text.contains("within -0.01 to +0.02 mm everywhere"), "{}", verdict.text);
+        assert!(verdict.text.in_unit(Unit::Millimetre).contains("within -0.01 to +0.02 mm everywhere"), "{verdict:?}");
     }
 
     #[test]
@@ -126,7 +120,7 @@ mod tests {
         for wall in [(-9, 0), (0, 19), (0, 21), (-11, 0)] {
             let verdict = verdict_of(&[wall]);
             assert_eq!(verdict.state, State::Open);
-            assert!(verdict.text.contains("more points tell"), "{}", verdict.text);
+            assert!(verdict.text.in_unit(Unit::Millimetre).contains("more points tell"), "{verdict:?}");
         }
     }
 
@@ -134,7 +128,7 @@ mod tests {
     fn a_wall_that_is_outside_with_two_standard_deviations_fails() {
         let verdict = verdict_of(&[(0, 0), (0, 23)]);
         assert_eq!(verdict.state, State::Fail);
-        assert!(verdict.text.contains("by up to 0.003 mm"), "{}", verdict.text);
+        assert!(verdict.text.in_unit(Unit::Millimetre).contains("by up to 0.003 mm"), "{verdict:?}");
         assert_eq!(verdict_of(&[(-13, 0)]).state, State::Fail);
     }
 }

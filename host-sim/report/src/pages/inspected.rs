@@ -3,25 +3,25 @@
 use truepath_correction::inspection;
 use truepath_correction::inspection::Judgement;
 use truepath_ground::diagnostics::Failure;
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Said, Unit};
 use truepath_ground::units::mm;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
 use super::{file, of_pass, page_warnings};
-use crate::InspectSummary;
 use crate::next::correct;
 use crate::page::{
     Figure, InputFile, Inspected, Kind, Limits, Outlook, Page, State, Verdict, WallFigures, judged_points, known,
     nominal,
 };
+use crate::{InspectSummary, statements};
 
-/// The page of an inspection. `warnings` are those of the summary without one for every reading set aside: these stand in the
+/// The page of an inspection. The judgement is said in millimetres and in inches. `warnings` are those of the summary without one for every reading set aside: these stand in the
 /// table of points.
 pub fn inspected(
     pass: &Pass,
     measurement: &Measurement,
-    judgement: &Judgement,
+    [in_mm, in_inches]: [&Judgement; 2],
     summary: &InspectSummary,
     warnings: &[String],
 ) -> Result<Page, Failure> {
@@ -41,7 +41,8 @@ pub fn inspected(
         Err(Failure::Input(error)) => notes.push(format!("the contour is not drawn: {error}")),
         Err(failure) => return Err(failure),
     }
-    let (points, left_out) = judged_points(pass, measurement, &judgement.points);
+    let judged = |unit| if unit == Unit::Inch { in_inches } else { in_mm };
+    let (points, left_out) = judged_points(pass, measurement, &in_mm.points);
     page.points = points;
     if let Some(outcome) = &mut page.outcome {
         outcome.measured_mm = known(summary.max_error_mm.abs().max(summary.min_error_mm.abs()));
@@ -59,17 +60,21 @@ pub fn inspected(
     // Dimensions alone are the file that was measured from.
     let probe = Some(measurement.file.as_str()).filter(|name| dimensions != Some(*name));
     page.next = Some(correct(file(pass.job.source().name()), probe.map(file), dimensions.map(file)));
-    page.told = Some(surface.words(Unit::Millimetre) + " (2 sigma)");
-    page.results = figures(summary, measurement, judgement.decimals);
+    page.told = Some(Said::of(|unit| surface.words(unit) + " (2 sigma)"));
+    page.results = figures(summary, measurement, in_mm.decimals);
     page.verdict = Some(Verdict {
         state: match summary.verdict.state {
             inspection::State::Pass => State::Pass,
             inspection::State::Fail => State::Fail,
             inspection::State::Open => State::Open,
         },
-        text: summary.verdict.text.clone(),
+        text: Said::of(|unit| judged(unit).verdict.text.clone()),
     });
     page.limits = Limits::of(summary);
+    let rests_on = |unit| statements(judged(unit), surface, summary.feature.as_ref(), unit);
+    let statements = rests_on(Unit::Millimetre).into_iter().zip(rests_on(Unit::Inch));
+    let statements =
+        statements.map(|(mm, inches)| Said::of(|unit| if unit == Unit::Inch { &inches } else { &mm }.clone()));
     page.inspected = Some(Inspected {
         part: summary.part.clone(),
         files: vec![
@@ -77,7 +82,7 @@ pub fn inspected(
             InputFile::new("probe file", &measurement.file, &summary.probe_crc32),
             InputFile::new("job", pass.job.source().name(), &summary.job_crc32),
         ],
-        statements: summary.statements.clone(),
+        statements: statements.collect(),
         coverage: summary.coverage.clone(),
     });
     page.warnings = page_warnings(pass, Some(&measurement.file), warnings.iter().cloned().chain(notes).chain(left_out));
@@ -92,7 +97,12 @@ fn figures(s: &InspectSummary, measurement: &Measurement, decimals: usize) -> Ve
     );
     let points = |state: &str, count: usize| Figure::of(format!("points {state}"), count as f64, 0, "");
     let touched = measurement.contacts.iter().map(|c| c.s).min().zip(measurement.contacts.iter().map(|c| c.s).max());
-    let between = touched.map(|(from, to)| format!("between s = {:.1} and {:.1} mm", mm(from), mm(to)));
+    let between = touched.map(|(from, to)| {
+        Said::of(|unit| {
+            let [from, to] = [from, to].map(|s| unit.of(mm(s)));
+            format!("between s = {from:.1} and {to:.1} {}", unit.name())
+        })
+    });
     let count = s.points_by_verdict.unwrap_or_default();
     let judged = s.points_by_verdict.is_some();
     let causes = &s.surface.causes;
@@ -105,7 +115,7 @@ fn figures(s: &InspectSummary, measurement: &Measurement, decimals: usize) -> Ve
         Figure::mm("95 % of the points", s.surface.p95_mm).map(|f| f.noted("are within")),
         Figure::mm("worst point: mean of its place", causes.mean_mm).map(|f| f.noted("what x and y cure")),
         Figure::mm("over the height", causes.height_mm).map(|f| f.noted("beside that mean: helix and bending")),
-        points("measured", s.points).map(|f| f.noted(between.unwrap_or_default())),
+        points("measured", s.points).map(|f| f.noted(between.unwrap_or_else(|| "".into()))),
         points("within", count.pass).filter(|_| judged),
         points("outside", count.fail).filter(|_| judged),
         points("undecided", count.open).filter(|_| judged),

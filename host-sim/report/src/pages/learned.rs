@@ -6,7 +6,7 @@ use truepath_correction::learn::LearnSummary;
 use truepath_correction::learning::Verdict;
 use truepath_correction::surface::expected::Surfaces;
 use truepath_ground::diagnostics::Failure;
-use truepath_ground::length::Unit;
+use truepath_ground::length::Said;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
@@ -39,15 +39,19 @@ pub fn learned(
     let mut page = of_correction(pass, measurement, done, points, |machine| predicted(machine, &passes))?;
     page.kind = Kind::Learn;
     // Judged is the part that is not milled yet.
-    page.verdict =
-        page.verdict.map(|v| page::Verdict { text: format!("part {}, {}", next_part(verdict), v.text), ..v });
+    page.verdict = page.verdict.map(|v| {
+        let text = Said::of(|unit| format!("part {}, {}", next_part(verdict), v.text.in_unit(unit)));
+        page::Verdict { text, ..v }
+    });
     page.title =
         format!("{}: part {} measured, correction of part {}", subject(pass), verdict.part, next_part(verdict));
     if let Some(outlook) = &mut page.outlook {
         outlook.now = WallFigures::from(&summary.whole_surface);
     }
-    let promise = summary.correct.floor.line(Unit::Millimetre, &summary.correct.surface.after);
-    page.told = Some(format!("Part {}: {promise}", next_part(verdict)));
+    let correct = &summary.correct;
+    page.told = Some(Said::of(|unit| {
+        format!("Part {}: {}", next_part(verdict), correct.floor.line(unit, &correct.surface.after))
+    }));
     page.results = came_out(summary).into_iter().chain(figures(&done.summary, &names(verdict))).collect();
     if let Some(outcome) = &mut page.outcome {
         outcome.measured_mm = known(verdict.measured_error_mm.max_mm);
@@ -61,23 +65,20 @@ pub fn learned(
 }
 
 /// From the part that was measured, as the model of all parts has its whole wall, to the next one.
-fn from_part_to_part(summary: &LearnSummary) -> String {
+fn from_part_to_part(summary: &LearnSummary) -> Said {
     let surfaces = Surfaces { before: summary.whole_surface, after: summary.correct.surface.after };
     let part = summary.verdict.part;
-    format!(
-        "part {part} to part {}, expected: {} (2 sigma)",
-        next_part(&summary.verdict),
-        surfaces.words(Unit::Millimetre)
-    )
+    let next = next_part(&summary.verdict);
+    Said::of(|unit| format!("part {part} to part {next}, expected: {} (2 sigma)", surfaces.words(unit)))
 }
 
 /// What made the worst of the part that was measured: at its touches, and of its whole wall as the model of all parts has it.
 fn what_made_it(summary: &LearnSummary) -> [Fact; 2] {
     let part = summary.verdict.part;
-    let fact = |of: &str, words: String| Fact::new(format!("worst of part {part}, {of}"), words);
+    let fact = |of: &str, words: Said| Fact::new(format!("worst of part {part}, {of}"), words);
     [
-        fact("touched", summary.measured_surface.worst_words(Unit::Millimetre)),
-        fact("by the model", summary.whole_surface.worst_words(Unit::Millimetre)),
+        fact("touched", Said::of(|unit| summary.measured_surface.worst_words(unit))),
+        fact("by the model", Said::of(|unit| summary.whole_surface.worst_words(unit))),
     ]
 }
 
@@ -115,10 +116,14 @@ fn words(verdict: &Verdict, corrected: bool) -> [Words; 3] {
 fn came_out(summary: &LearnSummary) -> Vec<Figure> {
     let (v, whole) = (&summary.verdict, &summary.whole_contour_error_mm);
     let (now, before, promise) = (&v.measured_error_mm, &v.previous_error_mm, &v.promise);
-    let places = format!("at {} places, rms {:.3} mm", now.places, now.rms_mm);
-    let along = format!("by the model, at s = {:.1} mm, σ {:.3} mm", whole.s_mm, whole.sigma_mm);
-    let earlier = format!("at the same places, rms {:.3} mm", before.rms_mm);
-    let worst = format!("at a touched height, ± {:.3} (2 sigma)", 2.0 * summary.measured_surface.sigma_mm);
+    let places = Said::of(|unit| format!("at {} places, rms {:.3} {}", now.places, unit.of(now.rms_mm), unit.name()));
+    let along = Said::of(|unit| {
+        let (s, sigma, name) = (unit.of(whole.s_mm), unit.of(whole.sigma_mm), unit.name());
+        format!("by the model, at s = {s:.1} {name}, σ {sigma:.3} {name}")
+    });
+    let earlier = Said::of(|unit| format!("at the same places, rms {:.3} {}", unit.of(before.rms_mm), unit.name()));
+    let sigma_mm = summary.measured_surface.sigma_mm;
+    let worst = Said::of(|unit| format!("at a touched height, ± {:.3} (2 sigma)", unit.of(2.0 * sigma_mm)));
     let promised = format!("{} of {} places within 2σ", promise.within_two_sigma, promise.places);
     let figures = [
         Figure::mm(format!("part {} measured, largest error", now.part), now.max_mm).map(|f| f.noted(places)),

@@ -11,6 +11,7 @@ mod simulated;
 
 use std::path::Path as FilePath;
 
+use truepath_ground::length::Said;
 use truepath_job::pass::Pass;
 
 use crate::page::{JobFacts, Kind, Outcome, Outlines, Page, Program, subject};
@@ -26,7 +27,7 @@ pub const REPORT: &str = "report.html";
 
 /// A page of a pass: program, job, stock.
 fn of_pass(kind: Kind, title: String, pass: &Pass) -> Page {
-    let mut page = Page::new(kind, format!("{title} {}", subject(pass)));
+    let mut page = Page::new(kind, format!("{title} {}", subject(pass))).told_in(pass.unit());
     page.program = Some(Program::of(pass, None));
     page.job = Some(JobFacts::of(pass));
     page.outlines = Outlines::of(pass);
@@ -40,12 +41,12 @@ fn file(name: &str) -> &FilePath {
 }
 
 /// Warnings as the page tells them: files without their folders, which are nobody's business who receives the page.
-fn page_warnings(pass: &Pass, probe: Option<&str>, warnings: impl Iterator<Item = String>) -> Vec<String> {
+fn page_warnings(pass: &Pass, probe: Option<&str>, warnings: impl Iterator<Item = String>) -> Vec<Said> {
     let files = [Some(pass.program.name()), Some(pass.job.source().name()), probe];
     let folder = |name: &str| name.rfind(['/', '\\']).map(|end| name[..=end].to_owned());
     // A folder of one mark ("/") stands in other texts as well.
     let mut folders: Vec<String> = files.into_iter().flatten().filter_map(folder).filter(|f| f.len() > 1).collect();
     // The longest first: one may be the beginning or the end of another.
     folders.sort_unstable_by_key(|folder| std::cmp::Reverse(folder.len()));
-    warnings.map(|text| folders.iter().fold(text, |text, folder| text.replace(folder, ""))).collect()
+    warnings.map(|text| folders.iter().fold(text, |text, folder| text.replace(folder, "")).into()).collect()
 }

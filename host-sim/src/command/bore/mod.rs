@@ -17,6 +17,7 @@ use truepath_bore::texture::{Cutoffs, texture};
 use truepath_bore::wanted::feed_for;
 use truepath_bore::{dependence, depth};
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length;
 use truepath_ground::output::OutputFolder;
 
 use truepath_job::job::one_of;
@@ -38,11 +39,12 @@ const FEEDS: [(&str, FeedAt); 2] = [("centre", FeedAt::Centre), ("wall", FeedAt:
 #[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub struct Options {
-    /// Nominal radius of the hole: the path of the centre and the cutter's radius together.
-    #[arg(long, value_name = "MM")]
+    /// Nominal radius of the hole: the path of the centre and the cutter's radius together, mm, or with its unit
+    /// (0.1in).
+    #[arg(long, value_name = "LENGTH", value_parser = length::flag)]
     hole_radius: f64,
-    /// Radius of the cutter.
-    #[arg(long, value_name = "MM")]
+    /// Radius of the cutter, mm, or with its unit (0.1in).
+    #[arg(long, value_name = "LENGTH", value_parser = length::flag)]
     cutter_radius: f64,
     /// Teeth, equally pitched.
     #[arg(long, value_name = "N")]
@@ -65,11 +67,11 @@ pub struct Options {
     /// Helix angle.
     #[arg(long, value_name = "DEG", default_value_t = 0.0)]
     helix: f64,
-    /// Look at the wall over this height as well.
-    #[arg(long, value_name = "MM")]
+    /// Look at the wall over this height as well, mm, or with its unit (0.1in).
+    #[arg(long, value_name = "LENGTH", value_parser = length::flag)]
     depth: Option<f64>,
-    /// Offset of the cutter's axis from the spindle's.
-    #[arg(long, value_name = "MM", default_value_t = 0.0)]
+    /// Offset of the cutter's axis from the spindle's, mm, or with its unit (0.1in).
+    #[arg(long, value_name = "LENGTH", value_parser = length::flag, default_value_t = 0.0)]
     runout: f64,
     /// Direction of the runout against tooth 1.
     #[arg(long, value_name = "DEG", default_value_t = 0.0)]
@@ -80,8 +82,8 @@ pub struct Options {
     /// Laps of the cutter's centre; by default one and as much as it takes to leave no seam.
     #[arg(long, value_name = "N")]
     laps: Option<f64>,
-    /// Cut-off wavelength λc between waviness and roughness.
-    #[arg(long, value_name = "MM", default_value_t = Cutoffs::default().lambda_c_mm)]
+    /// Cut-off wavelength λc between waviness and roughness, mm, or with its unit (0.1in).
+    #[arg(long, value_name = "LENGTH", value_parser = length::flag, default_value_t = Cutoffs::default().lambda_c_mm)]
     lambda_c: f64,
     /// Cut-off of roundness, undulations per revolution.
     #[arg(long, value_name = "UPR", default_value_t = Cutoffs::default().upr)]
@@ -92,8 +94,8 @@ pub struct Options {
     /// The ray, degrees along the travel from where the circle begins.
     #[arg(long, value_name = "DEG", requires = "roots")]
     phi: Option<f64>,
-    /// Find the feed at which the height of the waviness is this.
-    #[arg(long, value_name = "MM", conflicts_with = "laps")]
+    /// Find the feed at which the height of the waviness is this, mm, or with its unit (0.1in).
+    #[arg(long, value_name = "LENGTH", value_parser = length::flag, conflicts_with = "laps")]
     wanted_waviness: Option<f64>,
     /// Folder for tables, pictures and the summary.
     #[arg(short, long, value_name = "DIR")]

@@ -59,9 +59,9 @@ pub struct Options {
     /// The probe file is of the first of two passes, with this job (written by truepath split).
     #[arg(long, value_name = "FIRST-PASS.toml")]
     pub first_pass: Option<PathBuf>,
-    /// Half the width of the tolerance of the wall at every height, mm, in place of the limits of the job: says whether one pass
-    /// holds it.
-    #[arg(long, value_name = "MM", allow_negative_numbers = true, conflicts_with = "no_probe")]
+    /// Half the width of the tolerance of the wall at every height, mm, or with its unit (0.0005in, 12um), in place
+    /// of the limits of the job: says whether one pass holds it.
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true, conflicts_with = "no_probe")]
     pub tolerance: Option<String>,
     /// Where the fit begins.
     #[command(flatten)]

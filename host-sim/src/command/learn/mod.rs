@@ -59,9 +59,9 @@ pub struct Options {
     /// Correct in the program text or in the coprocessor; the job says it otherwise.
     #[arg(long, value_parser = one_of(&ROUTES))]
     pub route: Option<Route>,
-    /// Half the width of the tolerance of the wall at every height, mm, in place of the limits of the job: says whether one pass
-    /// holds it; of planned passes in place of that of the plan.
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    /// Half the width of the tolerance of the wall at every height, mm, or with its unit (0.0005in, 12um), in place
+    /// of the limits of the job: says whether one pass holds it; of planned passes in place of that of the plan.
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     pub tolerance: Option<String>,
     /// Of a part cut with planned passes: search for passes anew, instead of designing the same ones anew.
     #[arg(long)]

@@ -11,6 +11,7 @@ use summary::{summary, words};
 use truepath_core::gcode::{Dialect, PointlessLength, Units};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::files;
+use truepath_ground::length;
 use truepath_ground::output::{OutputFile, OutputFolder, json};
 use truepath_job::job::{DECIMALS, WORD_DIALECTS, one_of};
 use truepath_multiaxis::ball::Contacts;
@@ -41,8 +42,8 @@ pub struct Options {
     /// The machine file.
     #[arg(long, value_name = "M.toml")]
     pub machine: PathBuf,
-    /// Largest chord error of a move, mm.
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    /// Largest chord error of a move, mm, or with its unit (0.0005in, 12um).
+    #[arg(long, value_name = "LENGTH", value_parser = length::flag, allow_negative_numbers = true)]
     pub tolerance: f64,
     /// The rewritten program; without it the errors are only told.
     #[arg(short, long, value_name = "FILE")]

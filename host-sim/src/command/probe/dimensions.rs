@@ -28,10 +28,19 @@ pub(super) fn main(options: &Options, output: &FilePath, terminal: &Terminal) ->
 }
 
 fn words(plan: &DimensionPlan, output: &FilePath) -> String {
-    let mut text = String::from(" no.                                        Z mm  nominal mm\n");
+    let (unit, name) = (plan.unit, plan.unit.name());
+    let mut text = format!(" no.                                        Z {name}  nominal {name}\n");
     for (k, d) in plan.dimensions.iter().enumerate() {
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{:>4}  {:<34} {:>8.2} {:>11.3}  {}", k + 1, d.words(), d.z_mm, d.nominal_mm, d.why);
+        let _ = writeln!(
+            text,
+            "{:>4}  {:<34} {:>8.2} {:>11.3}  {}",
+            k + 1,
+            d.words(unit),
+            unit.of(d.z_mm),
+            unit.of(d.nominal_mm),
+            d.why
+        );
         let of = d.of();
         if !of.is_empty() {
             let _ = writeln!(text, "      {of}");
@@ -41,8 +50,11 @@ fn words(plan: &DimensionPlan, output: &FilePath) -> String {
     for unknown in &plan.unknowns {
         let _ = write!(text, " {} {:.0} %;", unknown.words, 100.0 * unknown.remaining);
     }
-    let [before, after] = plan.wall_sigma_mm;
-    let _ = writeln!(text, "\npredicted wall, one sigma: {before:.4} mm before the dimensions, {after:.4} mm after");
+    let [before, after] = plan.wall_sigma_mm.map(|sigma| unit.of(sigma));
+    let _ = writeln!(
+        text,
+        "\npredicted wall, one sigma: {before:.4} {name} before the dimensions, {after:.4} {name} after"
+    );
     for path in files(output) {
         let _ = writeln!(text, "written to {}", path.display());
     }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{ArgGroup, Args};
 use truepath_correction::verification::{ProbeDialect, Settings};
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length;
 use truepath_job::dimension::{INSTRUMENTS, Instrument};
 use truepath_job::job::{JobFile, ProbeFlags, Which, one_of};
 use truepath_job::pass::Pass;
@@ -37,14 +38,17 @@ pub struct Options {
     /// What the dimensions are taken with.
     #[arg(long, value_name = "NAME", requires = "dimensions", value_parser = one_of(&INSTRUMENTS), default_value = "calliper")]
     pub instrument: Instrument,
-    /// What a reading of it stays within, ± at two standard deviations (k = 2), mm [default: that of the instrument].
-    #[arg(long, value_name = "MM", requires = "dimensions")]
+    /// What a reading of it stays within, ± at two standard deviations (k = 2), mm, or with its unit (0.1in)
+    /// [default: that of the instrument].
+    #[arg(long, value_name = "LENGTH", value_parser = length::flag, requires = "dimensions")]
     pub uncertainty: Option<f64>,
-    /// The largest dimension that it takes, mm [default: 150 with a calliper, otherwise no limit].
-    #[arg(long, value_name = "MM", requires = "dimensions")]
+    /// The largest dimension that it takes, mm, or with its unit (0.1in) [default: 150 with a calliper, otherwise no
+    /// limit].
+    #[arg(long, value_name = "LENGTH", value_parser = length::flag, requires = "dimensions")]
     pub reach: Option<f64>,
-    /// How far the stock may be from the allowance of the job, mm [default: half of the allowance, at least 0.3].
-    #[arg(long, value_name = "MM", requires = "stock")]
+    /// How far the stock may be from the allowance of the job, mm, or with its unit (0.1in) [default: half of the
+    /// allowance, at least 0.3].
+    #[arg(long, value_name = "LENGTH", value_parser = length::flag, requires = "stock")]
     pub stock_margin: Option<f64>,
     /// What was measured on the part that will be touched again: cut by the job's program, or with the correction in DIR.
     #[arg(long, value_name = "FILE", requires = "next", group = "measured")]

@@ -12,7 +12,7 @@ use truepath_plant::Machine;
 use truepath_trial::virtual_mill;
 
 use super::part::shown;
-use super::reading::data;
+use super::reading::{data, in_mm};
 
 const MACHINE: &str = "ktc_n_per_mm2 = 700\nkrc_n_per_mm2 = 210\nkte_n_per_mm = 14\nkre_n_per_mm = 14\nstiffness_x_n_per_mm = 1500\nstiffness_y_n_per_mm = 2000\n";
 
@@ -52,7 +52,7 @@ fn a_page_of_one_of_several_depths_names_it_and_lists_the_others() {
     let which = Which { pass: Some(2), ..Which::default() };
     let page = simulated(&job, &folder.path().join("out"), which);
     let program = &page["program"];
-    assert_eq!(program["shown"], "the finishing contour, pass 2 of 2, Z -12 mm, lines 86-94");
+    assert_eq!(in_mm(&program["shown"]), "the finishing contour, pass 2 of 2, Z -12 mm, lines 86-94");
     assert!(program["why"].as_str().unwrap().contains("whose wall no other run takes away"));
     assert_eq!(of_walls(&page), [(1, "elsewhere".to_owned()), (2, "shown".to_owned())]);
     assert_eq!(outcomes(&page).len(), 9);
@@ -106,7 +106,7 @@ fn a_correction_tells_which_depths_got_it_and_an_inspection_which_it_judged() {
     let limits = "Judged is the wall of the finishing contour, pass 1 of 2, Z -6 mm, lines 71-79; not those of pass 2 (Z -12 mm).";
     assert!(told.summary.statements.iter().any(|s| s == limits), "{:?}", told.summary.statements);
     let page = data(&at("inspected/report.html"));
-    assert_eq!(page["statements"].as_array().unwrap().iter().filter(|s| *s == limits).count(), 1);
+    assert_eq!(page["statements"].as_array().unwrap().iter().filter(|s| in_mm(s) == limits).count(), 1);
 }
 
 #[test]
@@ -115,7 +115,7 @@ fn a_marked_feature_is_named_with_the_others_of_the_program() {
     let which = Which { feature: Some("boss".to_owned()), ..Which::default() };
     // The tool of the job is that of one feature.
     let page = simulated(&job, &folder.path().join("out"), which);
-    assert!(page["program"]["shown"].as_str().unwrap().starts_with("feature \"boss\", Z "), "{}", page["program"]);
+    assert!(in_mm(&page["program"]["shown"]).starts_with("feature \"boss\", Z "), "{}", page["program"]);
     assert_eq!(page["program"]["other_features"], serde_json::json!(["pocket"]));
 }
 

@@ -47,3 +47,8 @@ pub fn words(file: &Path, name: &str) -> Vec<String> {
     let at = rows.headers().unwrap().iter().position(|n| n == name).unwrap();
     rows.records().map(|row| row.unwrap()[at].to_owned()).collect()
 }
+
+/// A text of the page, in millimetres; none is empty.
+pub fn in_mm(said: &Value) -> &str {
+    said.get(0).unwrap_or(said).as_str().unwrap_or_default()
+}

@@ -7,7 +7,7 @@ use serde_json::Value;
 use truepath_job::job::Route;
 
 use super::part::{Part, pocket};
-use super::reading::{column, data, table, words};
+use super::reading::{column, data, in_mm, table, words};
 
 /// The columns of the page and those of `correction.csv`.
 fn same_as_correction(page: &Value, folder: &Path) {
@@ -49,7 +49,7 @@ fn same_as_points(page: &Value, folder: &Path, depth_mm: f64) {
     for ((point, height), (status, reason)) in points.iter().zip(table(&file, "height")).zip(status.iter().zip(&reason))
     {
         assert_eq!(point["status"], if status == "aside" { "aside" } else { "used" });
-        assert_eq!(point["reason"].as_str().unwrap_or_default(), reason);
+        assert_eq!(in_mm(&point["reason"]), reason);
         let z = point["z_mm"].as_f64();
         assert_eq!(z.is_some(), height.is_some());
         assert!(z.zip(height).is_none_or(|(z, height)| (z - height * depth_mm).abs() < 1e-5));
@@ -170,5 +170,6 @@ fn the_route_of_a_coprocessor_and_the_limits_of_the_job_are_told() {
     assert!(page["job"]["facts"].to_string().contains("coprocessor: the program stays as it is"));
     assert_eq!(page["tolerance_mm"], 0.2);
     assert_eq!(page["verdict"]["state"], "open");
-    assert!(page["verdict"]["text"].as_str().unwrap().contains("within -0.2 to +0.2 mm everywhere"));
+    assert!(in_mm(&page["verdict"]["text"]).contains("within -0.2 to +0.2 mm everywhere"));
+    assert!(page["verdict"]["text"][1].as_str().unwrap().contains("within -0.007874 to +0.007874 in everywhere"));
 }
