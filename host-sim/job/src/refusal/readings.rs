@@ -30,7 +30,7 @@ pub(super) fn of_contacts(error: &JobError, job: &JobFile, unit: Unit) -> InputE
                 Suspicion::Normals => format!("most readings are on the wall, but {guess}"),
                 _ => {
                     let (reach, name) = (unit.of(mm(REACH)), unit.name());
-                    format!("most readings are farther than {reach} {name} from the nominal wall; {guess}")
+                    format!("most readings are farther than {reach:.0} {name} from the nominal wall; {guess}")
                 }
             };
             InputError::of_core(error.code(), found, "readings on the wall of this contour", help)

@@ -131,7 +131,7 @@ fn wrong_files_are_refused_with_their_place_and_what_to_do() {
             scale(1.0),
             "M012",
             1,
-            "most readings are farther than 1 mm from the nominal wall; they fit when read as millimetres; expected readings on the wall of this contour",
+            "most readings are farther than 0.039 in from the nominal wall; they fit when read as millimetres; expected readings on the wall of this contour",
         ),
         (
             "inches after a metric program",
