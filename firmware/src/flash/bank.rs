@@ -4,6 +4,7 @@
 //! Slots and ledger share no sector, so that an erase for one can never cost the other anything.
 
 use embedded_storage::nor_flash::ReadNorFlash;
+use truepath_core::image::crc32;
 
 /// Bytes of a sector, the least that can be erased.
 pub const SECTOR_BYTES: usize = 128 * 1024;
@@ -96,4 +97,25 @@ impl Word {
     pub fn is_blank(self) -> bool {
         self == Self::Blank
     }
+}
+
+/// Fields of a sealed word.
+pub const FIELDS: usize = WORD_BYTES / 4 - 2;
+
+/// A word that tells what it is and whether it is whole, little endian: 0 magic, 4 fields, 28 CRC-32 of the 28 bytes before.
+pub fn sealed(magic: [u8; 4], fields: [u32; FIELDS]) -> [u8; WORD_BYTES] {
+    let mut word = [0; WORD_BYTES];
+    let (places, _) = word.as_chunks_mut::<4>();
+    for (place, field) in places.iter_mut().zip([u32::from_le_bytes(magic)].into_iter().chain(fields)) {
+        *place = field.to_le_bytes();
+    }
+    let sum = crc32(&word[..WORD_BYTES - 4]);
+    word[WORD_BYTES - 4..].copy_from_slice(&sum.to_le_bytes());
+    word
+}
+
+/// The fields of a sealed word of this magic; none of any other word.
+pub fn opened(magic: [u8; 4], word: &[u8; WORD_BYTES]) -> Option<[u32; FIELDS]> {
+    let fields = core::array::from_fn(|k| u32::from_le_bytes(core::array::from_fn(|byte| word[4 + 4 * k + byte])));
+    (sealed(magic, fields) == *word).then_some(fields)
 }

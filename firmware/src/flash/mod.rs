@@ -12,7 +12,7 @@ mod bank;
 mod nor;
 
 pub use bank::{
-    BANK_BYTES, BANK_WORDS, BLANK, LEDGER_SECTORS, Region, SECTOR_BYTES, SECTORS, SLOT_BYTES, SLOT_SECTORS, WORD_BYTES,
-    Word, sector_start,
+    BANK_BYTES, BANK_WORDS, BLANK, FIELDS, LEDGER_SECTORS, Region, SECTOR_BYTES, SECTORS, SLOT_BYTES, SLOT_SECTORS,
+    WORD_BYTES, Word, opened, sealed, sector_start,
 };
 pub use nor::{Cut, Moment, Nor, NorError, Wear, WordState};

@@ -1,14 +1,8 @@
 //! The page of counters: the places of each sector of the ledger behind its records, one word for each counter that was
 //! raised.
 //!
-//! | offset | bytes | |
-//! |---:|---:|---|
-//! | 0 | 4 | `TPV1` |
-//! | 4 | 12 | program, feature, pass; zeros if it counts for every pass |
-//! | 16 | 4 | counter: of the pass, or of every pass, no image below it is taken |
-//! | 20 | 4 | 0 for one pass, 1 for every pass |
-//! | 24 | 4 | zeros |
-//! | 28 | 4 | CRC-32 of the 28 bytes before |
+//! Fields of the word ([`sealed`], `TPV1`): program, feature, pass, zeros if it counts for every pass; the counter below which
+//! no image is taken, of the pass or of every pass; 0 for one pass, 1 for every pass; 0.
 //!
 //! A word is whole or it is none, and what counts is the greatest number: so every word that is programmed raises what is
 //! permitted from one value to the next, whatever the power does, and no order of words matters. When the journal begins
@@ -18,10 +12,10 @@
 //! that of every pass, and its own is forgotten: what is not known any more can only be signed anew, never go back.
 
 use embedded_storage::nor_flash::NorFlash;
-use truepath_core::image::{Counted, crc32};
+use truepath_core::image::Counted;
 
 use super::place::{COUNTER_PLACES, PLACE_BYTES, PLACES};
-use crate::flash::{LEDGER_SECTORS, WORD_BYTES, Word, sector_start};
+use crate::flash::{LEDGER_SECTORS, WORD_BYTES, Word, opened, sealed, sector_start};
 
 /// Passes of programs of which a counter is known.
 pub const MOST_COUNTED: usize = 64;
@@ -41,26 +35,15 @@ enum Entry {
 
 impl Entry {
     fn encode(self) -> [u8; WORD_BYTES] {
-        let mut word = [0; WORD_BYTES];
-        let magic = u32::from_le_bytes(MAGIC);
         let fields = match self {
-            Self::Pass(of) => [magic, of.program_crc, of.feature, of.pass, of.counter, 0],
-            Self::Every(counter) => [magic, 0, 0, 0, counter, 1],
+            Self::Pass(of) => [of.program_crc, of.feature, of.pass, of.counter, 0, 0],
+            Self::Every(counter) => [0, 0, 0, counter, 1, 0],
         };
-        for (to, field) in word.as_chunks_mut::<4>().0.iter_mut().zip(fields) {
-            *to = field.to_le_bytes();
-        }
-        let sum = crc32(&word[..WORD_BYTES - 4]);
-        word[WORD_BYTES - 4..].copy_from_slice(&sum.to_le_bytes());
-        word
+        sealed(MAGIC, fields)
     }
     fn decode(word: &[u8; WORD_BYTES]) -> Option<Self> {
-        let field = |at: usize| u32::from_le_bytes([word[at], word[at + 1], word[at + 2], word[at + 3]]);
-        if !word.starts_with(&MAGIC) || field(28) != crc32(&word[..WORD_BYTES - 4]) {
-            return None;
-        }
-        let [program_crc, feature, pass, counter] = [4, 8, 12, 16].map(field);
-        Some(match field(20) {
+        let [program_crc, feature, pass, counter, every, _] = opened(MAGIC, word)?;
+        Some(match every {
             0 => Self::Pass(Counted { program_crc, feature, pass, counter }),
             _ => Self::Every(counter),
         })

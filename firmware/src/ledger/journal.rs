@@ -15,15 +15,14 @@
 //! what an interrupted erase left between them would be read as its newest items; and it gives up on a word that
 //! fails its ECC instead of passing it over.
 //!
-//! Head word, little endian: 0 magic `TPL2`, 4 sequence, 8 bytes of payload, 12 CRC-32 of the payload, 16 zeros,
-//! 28 CRC-32 of the 28 bytes before.
+//! Fields of the head word ([`sealed`], `TPL2`): sequence, bytes of the payload, CRC-32 of the payload, zeros.
 
 use embedded_storage::nor_flash::NorFlash;
 use truepath_core::image::{Counted, KeyId, KeyRing, PublicKey, crc32};
 
 use super::place::{ALL_PLACES, PLACE_BYTES, PLACES};
 use super::{counters, keys};
-use crate::flash::{BLANK, LEDGER_SECTORS, SECTOR_BYTES, WORD_BYTES, Word, sector_start};
+use crate::flash::{BLANK, LEDGER_SECTORS, SECTOR_BYTES, WORD_BYTES, Word, opened, sealed, sector_start};
 
 /// Most bytes of a payload.
 pub const PAYLOAD_BYTES: usize = PLACE_BYTES - WORD_BYTES;
@@ -54,20 +53,12 @@ struct Head {
 
 impl Head {
     fn encode(self) -> [u8; WORD_BYTES] {
-        let mut word = [0; WORD_BYTES];
-        let fields = [u32::from_le_bytes(MAGIC), self.sequence, self.length as u32, self.crc];
-        for (to, field) in word.as_chunks_mut::<4>().0.iter_mut().zip(fields) {
-            *to = field.to_le_bytes();
-        }
-        let sum = crc32(&word[..WORD_BYTES - 4]);
-        word[WORD_BYTES - 4..].copy_from_slice(&sum.to_le_bytes());
-        word
+        sealed(MAGIC, [self.sequence, self.length as u32, self.crc, 0, 0, 0])
     }
     fn decode(word: &[u8; WORD_BYTES]) -> Option<Self> {
-        let field = |at: usize| u32::from_le_bytes([word[at], word[at + 1], word[at + 2], word[at + 3]]);
-        let sound = word.starts_with(&MAGIC) && field(28) == crc32(&word[..28]);
-        let head = Self { sequence: field(4), length: field(8) as usize, crc: field(12) };
-        (sound && head.length <= PAYLOAD_BYTES).then_some(head)
+        let [sequence, length, crc, ..] = opened(MAGIC, word)?;
+        let head = Self { sequence, length: length as usize, crc };
+        (head.length <= PAYLOAD_BYTES).then_some(head)
     }
 }
 

@@ -1,12 +1,11 @@
 //! The page of keys: the last place of each sector of the ledger, write-once. It has places of two words.
 //!
-//! A key takes two words: the 32 bytes of the public key, then its seal (0 magic `TPK1`, 4 CRC-32 of the key, 8 zeros,
-//! 28 CRC-32 of the 28 bytes before). The seal is programmed last; a key without it is none, and its two words are
-//! passed over. A key is taken back by a further place, of which only the first word is programmed (0 magic `TPR1`, 4
-//! number of the key, 12 zeros, 28 CRC-32 of the 28 bytes before); both words count wherever they lie. Nothing here is
-//! ever programmed twice: when the journal begins a sector it erases, it writes all keys there, and all that were taken
-//! back, before the first record. So the sector with the newest record, which is never erased, holds all of them,
-//! whatever the power does.
+//! A key takes two words: the 32 bytes of the public key, then its seal ([`sealed`], `TPK1`: CRC-32 of the key, zeros). The
+//! seal is programmed last; a key without it is none, and its two words are passed over. A key is taken back by a further
+//! place, of which only the first word is programmed (`TPR1`: number of the key in two fields, zeros); both words count
+//! wherever they lie. Nothing here is ever programmed twice: when the journal begins a sector it erases, it writes all keys
+//! there, and all that were taken back, before the first record. So the sector with the newest record, which is never
+//! erased, holds all of them, whatever the power does.
 //!
 //! Keys are not in the records: those have no room for them, and a firmware that cannot read a record of another version
 //! still finds the keys.
@@ -15,7 +14,7 @@ use embedded_storage::nor_flash::NorFlash;
 use truepath_core::image::{KeyId, KeyRing, PublicKey, crc32};
 
 use super::place::{ALL_PLACES, PLACE_BYTES};
-use crate::flash::{BLANK, LEDGER_SECTORS, WORD_BYTES, Word, sector_start};
+use crate::flash::{BLANK, LEDGER_SECTORS, WORD_BYTES, Word, sealed, sector_start};
 
 const MAGIC: [u8; 4] = *b"TPK1";
 const REVOKED: [u8; 4] = *b"TPR1";
@@ -29,21 +28,11 @@ fn pairs(sector: usize) -> impl Iterator<Item = u32> {
 }
 
 fn seal(key: &PublicKey) -> [u8; WORD_BYTES] {
-    let mut word = [0; WORD_BYTES];
-    word[..4].copy_from_slice(&MAGIC);
-    word[4..8].copy_from_slice(&crc32(&key.0).to_le_bytes());
-    let sum = crc32(&word[..WORD_BYTES - 4]);
-    word[WORD_BYTES - 4..].copy_from_slice(&sum.to_le_bytes());
-    word
+    sealed(MAGIC, [crc32(&key.0), 0, 0, 0, 0, 0])
 }
 
-fn revocation(key: KeyId) -> [u8; WORD_BYTES] {
-    let mut word = [0; WORD_BYTES];
-    word[..4].copy_from_slice(&REVOKED);
-    word[4..12].copy_from_slice(&key.0);
-    let sum = crc32(&word[..WORD_BYTES - 4]);
-    word[WORD_BYTES - 4..].copy_from_slice(&sum.to_le_bytes());
-    word
+fn revocation(KeyId([a, b, c, d, e, f, g, h]): KeyId) -> [u8; WORD_BYTES] {
+    sealed(REVOKED, [u32::from_le_bytes([a, b, c, d]), u32::from_le_bytes([e, f, g, h]), 0, 0, 0, 0])
 }
 
 /// The keys of both sectors. What was taken back first: a key may still stand where it was written.

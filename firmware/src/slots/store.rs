@@ -1,10 +1,10 @@
 //! A slot in the flash: its head and commit word, what it holds after any history, and its image.
 
 use embedded_storage::nor_flash::NorFlash;
-use truepath_core::image::{Binding, DEVICE_NODES, Image, SIGNATURE_BYTES, crc32, image_bytes};
+use truepath_core::image::{Binding, DEVICE_NODES, Image, SIGNATURE_BYTES, image_bytes};
 use truepath_core::link::{Denial, Slot};
 
-use crate::flash::{Region, SECTOR_BYTES, SLOT_BYTES, SLOT_SECTORS, WORD_BYTES, Word};
+use crate::flash::{Region, SECTOR_BYTES, SLOT_BYTES, SLOT_SECTORS, WORD_BYTES, Word, opened, sealed};
 
 /// Where the commit word lies in a slot.
 const COMMIT: u32 = WORD_BYTES as u32;
@@ -50,20 +50,12 @@ impl Kind {
 impl Header {
     /// The word.
     pub fn encode(self, kind: Kind) -> [u8; WORD_BYTES] {
-        let mut word = [0; WORD_BYTES];
-        let fields = [u32::from_le_bytes(kind.magic()), self.length, self.crc, self.generation];
-        for (to, field) in word.as_chunks_mut::<4>().0.iter_mut().zip(fields) {
-            *to = field.to_le_bytes();
-        }
-        let sum = crc32(&word[..28]);
-        word[28..].copy_from_slice(&sum.to_le_bytes());
-        word
+        sealed(kind.magic(), [self.length, self.crc, self.generation, 0, 0, 0])
     }
     /// What a word says, if it is an undamaged one of this kind.
     pub fn decode(kind: Kind, word: &[u8; WORD_BYTES]) -> Option<Self> {
-        let field = |at: usize| u32::from_le_bytes([word[at], word[at + 1], word[at + 2], word[at + 3]]);
-        let sound = word.starts_with(&kind.magic()) && field(28) == crc32(&word[..28]);
-        sound.then(|| Self { length: field(4), crc: field(8), generation: field(12) })
+        let [length, crc, generation, ..] = opened(kind.magic(), word)?;
+        Some(Self { length, crc, generation })
     }
 }
 
