@@ -79,9 +79,10 @@ impl<'a, F: NorFlash> Device<'a, F> {
     pub fn config_bytes(&mut self, bytes: &[u8], now_us: u64, mut answer: impl FnMut(&[u8])) -> Option<Restart> {
         self.config.receive(bytes, now_us, &mut self.servo, &mut answer)
     }
-    /// The timer of a millisecond: notices the silence of the setpoint link.
+    /// The timer of a millisecond: notices the silence of the setpoint link, lets the log be written.
     pub fn watch(&mut self, now_us: u64) {
         self.servo.watch(now_us);
+        self.config.rest(&mut self.servo);
     }
     /// Runs a computation that was asked for, to its end; says whether there was one.
     pub fn compute(&mut self, workspace: &mut Workspace<'_>) -> bool {

@@ -52,6 +52,10 @@ pub async fn serve<F: NorFlash>(
         let taken = match select(tick.wait(), receiver.read(&mut chunk)).await {
             Either::First(()) => {
                 board.config_task_lives();
+                if let Ok(mut guard) = configuration.try_lock() {
+                    let Configuration { service, servo } = &mut *guard;
+                    service.rest(servo);
+                }
                 continue;
             }
             Either::Second(Ok(taken)) => taken,

@@ -1,8 +1,8 @@
 //! Which image is in use, and whose turn it is with the image buffer.
 
 use embedded_storage::nor_flash::NorFlash;
-use truepath_core::image::Counted;
-use truepath_core::link::{ActiveImage, Denial, DeviceSettingsError, Reply, Slot};
+use truepath_core::image::{Counted, KeyId};
+use truepath_core::link::{ActiveImage, Change, Denial, DeviceSettingsError, LogEntry, Reply, Slot};
 use truepath_core::rewrite::Settings;
 
 use super::handler::{Handler, idle};
@@ -31,6 +31,10 @@ impl<'a, F: NorFlash> Handler<'a, F> {
         let before = self.active;
         let settings = self.settings().rewriter;
         let done = self.load(wanted, &settings, servo).and_then(|counted| {
+            if self.ledger.now().active != Some(wanted) {
+                let (counter, key) = counted.map_or((0, None), |(counted, key)| (counted.counter, Some(key)));
+                self.note(LogEntry { value: wanted.crc, counter, key, ..self.entry(Change::Activated) })?;
+            }
             self.ledger.change(&mut self.flash, |now| now.active = Some(wanted))?;
             Ok(counted)
         });
@@ -45,8 +49,8 @@ impl<'a, F: NorFlash> Handler<'a, F> {
 
     /// Raises the counter of the image that was put in use. If the flash does not take it, none is in use.
     #[inline(never)]
-    fn count(&mut self, counted: Option<Counted>, servo: &mut impl ServoAccess<'a>) -> Result<(), Denial> {
-        let Some(counted) = counted else { return Ok(()) };
+    fn count(&mut self, counted: Option<(Counted, KeyId)>, servo: &mut impl ServoAccess<'a>) -> Result<(), Denial> {
+        let Some((counted, _)) = counted else { return Ok(()) };
         if let Err(failed) = self.ledger.raise(&mut self.flash, &counted) {
             self.active = None;
             self.borrow_image(servo)?;
@@ -58,6 +62,9 @@ impl<'a, F: NorFlash> Handler<'a, F> {
     pub fn deactivate<'s>(&mut self, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         idle(servo)?;
         self.not_computing()?;
+        if let Some(active) = self.ledger.now().active {
+            self.note(LogEntry { value: active.crc, ..self.entry(Change::Deactivated) })?;
+        }
         self.ledger.change(&mut self.flash, |now| now.active = None)?;
         self.borrow_image(servo)?;
         self.active = None;
@@ -74,7 +81,7 @@ impl<'a, F: NorFlash> Handler<'a, F> {
         Ok(())
     }
 
-    /// Reads the image of a slot into the buffer and puts it in use; gives the counter of a signed one.
+    /// Reads the image of a slot into the buffer and puts it in use; gives counter and key of a signed one.
     ///
     /// Not inlined, as what else is done seldom: every request stands upon the frame of the service.
     #[inline(never)]
@@ -83,7 +90,7 @@ impl<'a, F: NorFlash> Handler<'a, F> {
         wanted: ActiveImage,
         settings: &Settings,
         servo: &mut impl ServoAccess<'a>,
-    ) -> Result<Option<Counted>, Denial> {
+    ) -> Result<Option<(Counted, KeyId)>, Denial> {
         self.borrow_image(servo)?;
         self.active = None;
         let buffer = self.image.take().ok_or(Denial::Busy)?;

@@ -49,6 +49,12 @@ pub(super) struct Handler<'a, F> {
     pub ledger: Ledger,
     pub board: Board,
     pub started_us: u64,
+    /// Of the request that is carried out.
+    pub now_us: u64,
+    /// The time that a host told, seconds since 1970, and when it did.
+    pub told_time: Option<(u32, u64)>,
+    /// The flash did not take an entry of the log.
+    pub log_fails: bool,
     /// What the slots hold, without who is active.
     pub slots: [Slot; 2],
     /// The image in the servo.

@@ -6,7 +6,7 @@
 
 use embedded_storage::nor_flash::NorFlash;
 use truepath_core::image::{KeyId, KeyRingError, PublicKey};
-use truepath_core::link::{Denial, DeviceKeys, Reply};
+use truepath_core::link::{Change, Denial, DeviceKeys, LogEntry, Reply};
 use truepath_core::rewrite::Mode;
 
 use super::handler::Handler;
@@ -32,6 +32,11 @@ impl<'a, F: NorFlash> Handler<'a, F> {
     #[inline(never)]
     pub fn provision<'s>(&mut self, key: PublicKey, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         self.attended(servo)?;
+        let mut next = *self.ledger.keys();
+        next.add(key).map_err(NotProvisioned::Ring)?;
+        if next != *self.ledger.keys() {
+            self.note(LogEntry { key: Some(key.id()), ..self.entry(Change::Provisioned) })?;
+        }
         self.ledger.provision(&mut self.flash, key)?;
         self.verify_again(servo)
     }
@@ -40,6 +45,9 @@ impl<'a, F: NorFlash> Handler<'a, F> {
     #[inline(never)]
     pub fn revoke<'s>(&mut self, key: KeyId, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         self.attended(servo)?;
+        if self.ledger.keys().iter().any(|trusted| trusted.id() == key) {
+            self.note(LogEntry { key: Some(key), ..self.entry(Change::Revoked) })?;
+        }
         self.ledger.revoke(&mut self.flash, key)?;
         self.verify_again(servo)
     }

@@ -14,6 +14,7 @@ mod activate;
 mod compute;
 mod handler;
 mod keys;
+mod log;
 mod operate;
 mod report;
 mod upload;
@@ -21,8 +22,8 @@ mod upload;
 use embedded_storage::nor_flash::NorFlash;
 use heapless::Vec;
 use truepath_core::link::{
-    ActiveImage, Ask, CHUNK_BYTES, Deframer, Denial, Framed, Item, LinkError, PACKET_BYTES, Progress, Reply, Request,
-    Response, decode, encode,
+    ActiveImage, Ask, CHUNK_BYTES, Change, Deframer, Denial, Framed, Item, LinkError, LogEntry, PACKET_BYTES, Progress,
+    Reply, Request, Response, decode, encode,
 };
 use truepath_core::rewrite::{Mode, Rewriter};
 
@@ -74,6 +75,9 @@ impl<'a, F: NorFlash> ConfigService<'a, F> {
             ledger,
             board,
             started_us: now_us,
+            now_us,
+            told_time: None,
+            log_fails: false,
             slots,
             active: None,
             image: Some(image),
@@ -122,6 +126,12 @@ impl<'a, F: NorFlash> ConfigService<'a, F> {
         self.handler.finish(computation, servo);
     }
 
+    /// Called while nothing is asked, as from the timer of a millisecond: writes what the log has in RAM, if the flash may be
+    /// written.
+    pub fn rest(&mut self, servo: &mut impl ServoAccess<'a>) {
+        self.handler.rest(servo);
+    }
+
     /// Bytes of the stream; `send` gets the answer to each undamaged request. After a request to restart the rest of
     /// the bytes is left.
     pub fn receive(
@@ -154,6 +164,7 @@ impl<'a, F: NorFlash> ConfigService<'a, F> {
                 continue;
             }
             *asked = copy;
+            handler.now_us = now_us;
             let mut scratch = [0; CHUNK_BYTES];
             let (response, keep, restart) = match request {
                 Ok(Request { id, ask }) => {
@@ -206,6 +217,7 @@ impl<'a, F: NorFlash> Handler<'a, F> {
             Ask::ClearCounters => {
                 idle(servo)?;
                 servo.with(|servo| servo.clear_counters());
+                self.keep(self.entry(Change::CountersCleared));
                 Ok(Reply::Done)
             }
             Ask::Trace => {
@@ -215,14 +227,24 @@ impl<'a, F: NorFlash> Handler<'a, F> {
             Ask::Recording { from } => self.recording(from, servo, scratch),
             Ask::ReleaseRecording => {
                 servo.with(|servo| servo.release_recording());
+                self.keep(self.entry(Change::RecordingReleased));
                 Ok(Reply::Done)
             }
             Ask::Compute => self.compute(servo),
             Ask::Progress => Ok(Reply::Progress(self.progress())),
-            Ask::Restart { .. } => Ok(Reply::Done),
+            Ask::Restart { watchdog } => {
+                self.keep(LogEntry { value: watchdog.into(), ..self.entry(Change::Restarted) });
+                self.rest(servo);
+                Ok(Reply::Done)
+            }
             Ask::Keys => Ok(Reply::Keys(self.keys())),
             Ask::Provision(key) => self.provision(key, servo),
             Ask::Revoke(key) => self.revoke(key, servo),
+            Ask::Log { from } => Ok(self.log(from, servo)),
+            Ask::Time { unix_s } => {
+                self.told_time = Some((unix_s, now_us));
+                Ok(Reply::Done)
+            }
         }
     }
 }
@@ -250,5 +272,6 @@ const fn changes(ask: &Ask<'_>) -> bool {
             | Ask::Recording { .. }
             | Ask::Progress
             | Ask::Keys
+            | Ask::Log { .. }
     )
 }

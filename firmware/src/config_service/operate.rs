@@ -1,7 +1,8 @@
 //! Acknowledge, arm, disarm, configure.
 
 use embedded_storage::nor_flash::NorFlash;
-use truepath_core::link::{Denial, DeviceSettings, DeviceSettingsError, Reply};
+use truepath_core::image::crc32;
+use truepath_core::link::{Change, Denial, DeviceSettings, DeviceSettingsError, LogEntry, Reply};
 use truepath_core::rewrite::{ArmRequest, Mode, Refusal, Rewriter, Spent};
 
 use super::handler::Handler;
@@ -18,6 +19,7 @@ impl From<JournalFailed> for Denial {
 impl<'a, F: NorFlash> Handler<'a, F> {
     pub fn acknowledge<'s>(&mut self, now_us: u64, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         servo.with(|servo| servo.acknowledge(now_us)).map_err(Denial::Refused)?;
+        self.keep(self.entry(Change::Acknowledged));
         Ok(Reply::Done)
     }
 
@@ -44,6 +46,7 @@ impl<'a, F: NorFlash> Handler<'a, F> {
     /// (the link fell silent meanwhile), it stays spent.
     pub fn arm<'s>(&mut self, request: &ArmRequest, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         let pass = self.would_spend(request, servo)?;
+        self.note(LogEntry { value: pass.part_serial, ..self.entry(Change::Armed) })?;
         self.ledger.change(&mut self.flash, |now| now.spend(pass))?;
         servo.with(|servo| servo.arm(request)).map_err(Denial::Refused)?;
         Ok(Reply::Done)
@@ -51,6 +54,7 @@ impl<'a, F: NorFlash> Handler<'a, F> {
 
     pub fn disarm<'s>(&mut self, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         servo.with(|servo| servo.disarm()).map_err(Denial::Refused)?;
+        self.keep(self.entry(Change::Disarmed));
         Ok(Reply::Done)
     }
 
@@ -72,11 +76,23 @@ impl<'a, F: NorFlash> Handler<'a, F> {
             self.reload(&before.rewriter, servo)?;
             Err(denial)
         })?;
-        if let Err(failed) = self.ledger.change(&mut self.flash, |now| now.settings = Some(settings)) {
+        if let Err(denial) = self.keep_settings(settings) {
             self.reload(&before.rewriter, servo)?;
-            return Err(failed.into());
+            return Err(denial);
         }
         servo.with(|servo| servo.configure(settings, bare)).map_err(Denial::Refused)?;
         Ok(Reply::Done)
     }
+
+    fn keep_settings(&mut self, settings: DeviceSettings) -> Result<(), Denial> {
+        if self.ledger.now().settings != Some(settings) {
+            let mut bytes = [0; SETTINGS_BYTES];
+            let value = postcard::to_slice(&settings, &mut bytes).map_or(0, |bytes| crc32(bytes));
+            self.note(LogEntry { value, ..self.entry(Change::Configured) })?;
+        }
+        Ok(self.ledger.change(&mut self.flash, |now| now.settings = Some(settings))?)
+    }
 }
+
+/// Room for the encoding of any settings: 32 numbers of ten bytes at most.
+const SETTINGS_BYTES: usize = 320;

@@ -14,7 +14,7 @@
 use embedded_storage::nor_flash::NorFlash;
 use truepath_core::image::Counted;
 
-use super::place::{COUNTER_PLACES, PLACE_BYTES, PLACES};
+use super::place::{COUNTER_PLACES, FIRST_COUNTER_PLACE, PLACE_BYTES};
 use crate::flash::{LEDGER_SECTORS, WORD_BYTES, Word, opened, sealed, sector_start};
 
 /// Passes of programs of which a counter is known.
@@ -59,7 +59,7 @@ impl Entry {
 }
 
 fn at(sector: usize, word: u32) -> u32 {
-    sector_start(LEDGER_SECTORS.first + sector) + (PLACES * PLACE_BYTES) as u32 + word * WORD_BYTES as u32
+    sector_start(LEDGER_SECTORS.first + sector) + (FIRST_COUNTER_PLACE * PLACE_BYTES) as u32 + word * WORD_BYTES as u32
 }
 
 fn read<F: NorFlash>(flash: &mut F, sector: usize, word: u32) -> Option<Entry> {

@@ -6,8 +6,8 @@
 //! programmed is found again, a place that was begun is passed over, and a sector whose erase was interrupted is
 //! erased again before it is used, because the newest record is not in it.
 //!
-//! The last place of a sector is for the keys ([`keys`]), those before it for the counters of images ([`counters`]). What of
-//! them counts is written before its first record.
+//! The last place of a sector is for the keys ([`keys`]), those before it for the counters of images ([`counters`]) and for
+//! the log of changes ([`log`]). What of them counts is written before its first record.
 //!
 //! A sector is good for 10,000 erases (DS12110), the journal so for 2.5 million records.
 //!
@@ -19,9 +19,10 @@
 
 use embedded_storage::nor_flash::NorFlash;
 use truepath_core::image::{Counted, KeyId, KeyRing, PublicKey, crc32};
+use truepath_core::link::LogEntry;
 
 use super::place::{ALL_PLACES, PLACE_BYTES, PLACES};
-use super::{counters, keys};
+use super::{counters, keys, log};
 use crate::flash::{BLANK, LEDGER_SECTORS, SECTOR_BYTES, WORD_BYTES, Word, opened, sealed, sector_start};
 
 /// Most bytes of a payload.
@@ -80,7 +81,7 @@ impl Journal {
     /// Finds the newest record and copies its payload; gives the journal and the length of the payload, if any.
     pub fn open<F: NorFlash>(flash: &mut F, payload: &mut [u8; PAYLOAD_BYTES]) -> (Self, Option<usize>) {
         let mut newest: Option<(Place, Head)> = None;
-        // In the places behind there may be a record of a firmware that had neither keys nor counters.
+        // In the places behind there may be a record of a firmware that had neither log nor keys nor counters.
         let places = |sector| (0..ALL_PLACES).map(move |index| Place { sector, index });
         for place in (0..LEDGER_SECTORS.count).flat_map(places) {
             let Some(head) = read_head(flash, place) else { continue };
@@ -138,19 +139,29 @@ impl Journal {
     pub fn raise<F: NorFlash>(&self, flash: &mut F, to: &Counted) -> bool {
         self.current.is_some_and(|sector| counters::raise(flash, sector, to))
     }
+    /// Writes an entry of the log in the sector of the newest record; whether that went well.
+    pub fn log<F: NorFlash>(&self, flash: &mut F, entry: &LogEntry) -> bool {
+        self.current.is_some_and(|sector| log::write(flash, sector, entry))
+    }
+    /// The entries of the log, oldest first.
+    pub fn logged<F: NorFlash>(&self, flash: &mut F) -> impl Iterator<Item = LogEntry> {
+        self.current.into_iter().flat_map(log::pairs).filter_map(move |at| log::read(flash, at))
+    }
     /// Lets the next record begin the other sector.
     pub fn leave_sector(&mut self) {
         self.next = None;
     }
 
-    /// Erases the sector that does not hold the newest record, and writes keys and counters there; slow, once in [`PLACES`]
+    /// Erases the sector that does not hold the newest record, and writes keys, counters and log there; slow, once in [`PLACES`]
     /// records.
     fn begin_sector<F: NorFlash>(&mut self, flash: &mut F, keys: &KeyRing) -> Result<Place, JournalFailed> {
         let sector = self.current.map_or(0, |current| 1 - current);
         let start = sector_start(LEDGER_SECTORS.first + sector);
         flash.erase(start, start + SECTOR_BYTES as u32).map_err(|_| JournalFailed)?;
         let written = keys::write_all(flash, sector, keys)
-            && self.current.is_none_or(|current| counters::copy(flash, current, sector));
+            && self
+                .current
+                .is_none_or(|current| counters::copy(flash, current, sector) && log::copy(flash, current, sector));
         if written { Ok(Place { sector, index: 0 }) } else { Err(JournalFailed) }
     }
 }

@@ -1,25 +1,30 @@
 //! What the device remembers over resets: the active image, its settings, the armed passes of parts, its boots, the keys
-//! it trusts and those it trusts no more, the counters of signed images that were in use.
+//! it trusts and those it trusts no more, the counters of signed images that were in use, the log of changes.
 //!
-//! All of it but keys and counters is one record of the journal, so that every change is whole or has not happened. A copy
-//! in RAM is read; it changes only after the flash has taken the change. Keys and counters have pages of their own (`keys`,
-//! `counters`); the counters have no copy in RAM.
+//! All of it but keys, counters and log is one record of the journal, so that every change is whole or has not happened. A copy
+//! in RAM is read; it changes only after the flash has taken the change. Keys, counters and log have pages of their own
+//! (`keys`, `counters`, `log`); counters and log have no copy in RAM.
 
 mod counters;
 mod journal;
 mod keys;
+mod log;
 mod place;
 
 use embedded_storage::nor_flash::NorFlash;
 use serde::{Deserialize, Serialize};
-use truepath_core::image::{Binding, Counted, DeviceClass, KeyId, KeyRing, KeyRingError, PublicKey, SignatureError};
-use truepath_core::link::{ActiveImage, DeviceSettings};
+use truepath_core::image::{
+    Binding, Counted, DeviceClass, KeyId, KeyRing, KeyRingError, PublicKey, SignatureError, Signed,
+};
+use truepath_core::link::{ActiveImage, DeviceSettings, LogEntry};
 use truepath_core::rewrite::{Spent, SpentList};
 
 pub use counters::MOST_COUNTED;
 pub use journal::JournalFailed;
 use journal::{Journal, PAYLOAD_BYTES};
-pub use place::PLACES;
+use log::Log;
+pub use log::{MOST_LOGGED, MOST_WAITING};
+pub use place::{FIRST_COUNTER_PLACE, PLACES};
 
 /// The record. The order is that of importance: of a record that another firmware has written, as much is taken as
 /// can be read from the front.
@@ -53,11 +58,12 @@ impl Remembered {
 }
 
 /// The record and the journal it is kept in.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Ledger {
     journal: Journal,
     now: Remembered,
     keys: KeyRing,
+    log: Log,
 }
 
 /// Why a key is not trusted.
@@ -77,7 +83,8 @@ impl Ledger {
         let (journal, length) = Journal::open(flash, &mut payload);
         let mut now = length.map(|length| read(&payload[..length])).unwrap_or_default();
         now.settings = now.settings.filter(|settings| settings.check().is_ok());
-        Self { journal, now, keys: keys::read(flash) }
+        let log = Log::behind(journal.logged(flash).last());
+        Self { journal, now, keys: keys::read(flash), log }
     }
     /// What is remembered.
     pub const fn now(&self) -> &Remembered {
@@ -158,7 +165,7 @@ impl Ledger {
     }
 
     /// Refused unless an image may be used here: any while no key is provisioned, else one that is signed for this class
-    /// and not older than another of its pass that was in use. Gives its counter, of a signed one.
+    /// and not older than another of its pass that was in use. Gives its counter and the number of its key, of a signed one.
     ///
     /// Not inlined: the verification has frames of its own, which nothing else is to stand upon.
     ///
@@ -171,11 +178,14 @@ impl Ledger {
         image: &[u8],
         binding: &Binding,
         class: DeviceClass,
-    ) -> Result<Option<Counted>, SignatureError> {
+    ) -> Result<Option<(Counted, KeyId)>, SignatureError> {
         let Some(found) = self.keys.admits(image, class)? else { return Ok(None) };
         let counted = Counted::of(binding, found);
         let least = counters::least(flash, &counted);
-        if found < least { Err(SignatureError::RolledBack { found, least }) } else { Ok(Some(counted)) }
+        if found < least {
+            return Err(SignatureError::RolledBack { found, least });
+        }
+        Ok(Signed::of(image).map(|signed| (counted, signed.key)))
     }
     /// No image of this pass with a lower counter is taken any more. Takes up to two programmed words.
     ///
@@ -189,6 +199,52 @@ impl Ledger {
         // The page is used up: what still counts goes to the other sector, and leaves room there.
         self.change_sector(flash)?;
         if self.journal.raise(flash, to) { Ok(()) } else { Err(JournalFailed) }
+    }
+
+    /// Writes an entry of the log, behind those that waited; it gets the next number. Takes two programmed words each, and
+    /// once in a while a sector is erased.
+    ///
+    /// # Errors
+    /// The flash did not take it: there is no such entry.
+    #[inline(never)]
+    pub fn note<F: NorFlash>(&mut self, flash: &mut F, entry: LogEntry) -> Result<(), JournalFailed> {
+        self.write_waiting(flash)?;
+        self.log.keep(entry);
+        self.write_waiting(flash).inspect_err(|_| self.log.waiting.clear())
+    }
+    /// Lets an entry of the log wait until the flash may be written. Where there is no room it is dropped, and its number
+    /// with it.
+    pub fn keep(&mut self, entry: LogEntry) {
+        self.log.keep(entry);
+    }
+    /// Whether entries of the log wait.
+    pub fn has_waiting(&self) -> bool {
+        !self.log.waiting.is_empty()
+    }
+    /// Writes the entries of the log that wait.
+    ///
+    /// # Errors
+    /// The flash did not take one: it and those behind it still wait.
+    pub fn write_waiting<F: NorFlash>(&mut self, flash: &mut F) -> Result<(), JournalFailed> {
+        while let Some(entry) = self.log.waiting.front().copied() {
+            if !self.journal.log(flash, &entry) {
+                // The page is used up: the newest go to the other sector, and leave room there.
+                self.change_sector(flash)?;
+                if !self.journal.log(flash, &entry) {
+                    return Err(JournalFailed);
+                }
+            }
+            let _ = self.log.waiting.pop_front();
+        }
+        Ok(())
+    }
+    /// The entries of the log that are in the flash, oldest first.
+    pub fn logged<F: NorFlash>(&self, flash: &mut F) -> impl Iterator<Item = LogEntry> {
+        self.journal.logged(flash)
+    }
+    /// Number of the next entry of the log.
+    pub const fn next_entry(&self) -> u32 {
+        self.log.next
     }
 }
 

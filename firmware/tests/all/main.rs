@@ -10,6 +10,7 @@ mod ledger_series;
 mod wire_compute;
 mod wire_counted;
 mod wire_histories;
+mod wire_logged;
 mod wire_longest;
 mod wire_messages;
 mod wire_modes;

@@ -48,6 +48,8 @@ fn asks(image: &[u8]) -> Vec<Ask<'_>> {
         Ask::Keys,
         Ask::Provision(public(&owner(1))),
         Ask::Revoke(public(&owner(1)).id()),
+        Ask::Log { from: 0 },
+        Ask::Time { unix_s: 1_700_000_000 },
     ]
 }
 

@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use truepath_core::checksum::crc32;
 use truepath_core::link::{
-    Ask, CHUNK_BYTES, Denial, DeviceKeys, DeviceSettings, DeviceStatus, Item, LinkError, PACKET_BYTES, Reply, Request,
-    Response, Slot, decode, encode,
+    Ask, CHUNK_BYTES, Denial, DeviceKeys, DeviceSettings, DeviceStatus, Item, LinkError, LogEntry, PACKET_BYTES, Reply,
+    Request, Response, Slot, decode, encode,
 };
 
 use super::error::BenchError;
@@ -152,6 +152,36 @@ impl<W: Wire> Client<W> {
         match self.ask(Ask::Keys)? {
             Reply::Keys(keys) => Ok(keys),
             other => Err(foreign(&other)),
+        }
+    }
+    /// Tells a device that keeps a log the time, seconds since 1970.
+    ///
+    /// # Errors
+    /// As [`Client::ask`]; none of a firmware that keeps no log.
+    pub fn tell_time(&mut self, unix_s: u32) -> Result<(), BenchError> {
+        match self.done(Ask::Time { unix_s }) {
+            Err(BenchError::Denied(Denial::Unknown)) => Ok(()),
+            other => other,
+        }
+    }
+    /// The log of changes from an entry on, oldest first, and the number of the next one.
+    ///
+    /// # Errors
+    /// As [`Client::ask`].
+    pub fn log(&mut self, mut from: u32) -> Result<(Vec<LogEntry>, u32), BenchError> {
+        let mut all: Vec<LogEntry> = Vec::new();
+        loop {
+            let (next, entries) = match self.ask(Ask::Log { from })? {
+                Reply::Log { next, entries } => (next, entries),
+                other => return Err(foreign(&other)),
+            };
+            // In their order, so that it ends.
+            let Some(last) = entries.last().filter(|last| last.sequence >= from && last.sequence < u32::MAX) else {
+                all.extend(entries);
+                return Ok((all, next));
+            };
+            from = last.sequence + 1;
+            all.extend(entries);
         }
     }
     /// Both image slots.

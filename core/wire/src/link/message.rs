@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::denial::Denial;
 use super::device::{DeviceKeys, DeviceStatus, Hello, Item, Progress, Slot};
+use super::log::{LOG_ENTRIES, LogEntry};
 use super::settings::DeviceSettings;
 use super::trace::{TRACE_SAMPLES, TraceSample};
 use crate::image::{KeyId, PublicKey};
@@ -114,10 +115,19 @@ pub enum Ask<'a> {
     Provision(PublicKey),
     /// Trusts a key no more, for ever.
     Revoke(KeyId),
+    /// Entries of the log of changes.
+    Log {
+        /// Number of the first one wanted; older ones than are kept are passed over.
+        from: u32,
+    },
+    /// Tells the device the time, for its log.
+    Time {
+        /// Seconds since 1970.
+        unix_s: u32,
+    },
 }
 
 /// The replies.
-#[expect(clippy::large_enum_variant, reason = "without an allocator there is no box; a response lies on a stack once")]
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Reply<'a> {
     /// Carried out.
@@ -163,4 +173,11 @@ pub enum Reply<'a> {
     Progress(Progress),
     /// To `Keys`.
     Keys(DeviceKeys),
+    /// To `Log`.
+    Log {
+        /// Number of the next entry.
+        next: u32,
+        /// Oldest first; empty behind the newest one that is in the flash.
+        entries: Vec<LogEntry, LOG_ENTRIES>,
+    },
 }

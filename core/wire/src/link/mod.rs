@@ -27,6 +27,7 @@ mod denial;
 mod device;
 mod endpoint;
 mod error;
+mod log;
 mod message;
 mod packet;
 mod recorder;
@@ -44,6 +45,7 @@ pub use device::{
 };
 pub use endpoint::{BEHIND, Endpoint, RESTART_AFTER, Verdict};
 pub use error::LinkError;
+pub use log::{Change, LOG_ENTRIES, LogEntry};
 pub use message::{Ask, CHUNK_BYTES, MESSAGE_BYTES, PACKET_BYTES, Reply, Request, Response};
 pub use packet::{decode, encode};
 pub use recorder::Recorder;

@@ -7,8 +7,8 @@ use link_samples::*;
 use serde::Serialize;
 use truepath_wire::image::{Binding, DeviceClass};
 use truepath_wire::link::{
-    ActiveImage, ComputeFailure, Computed, DeviceSettings, Item, PACKET_BYTES, Progress, Request, ResetCause, Response,
-    Slot, Stage, encode,
+    ActiveImage, Change, ComputeFailure, Computed, DeviceSettings, Item, PACKET_BYTES, Progress, Request, ResetCause,
+    Response, Slot, Stage, encode,
 };
 use truepath_wire::rewrite::{Mode, Settings};
 
@@ -91,6 +91,7 @@ fn types_have_the_fields_of_the_table_in_its_order() {
         format!("{:?}", keys().keys),
         format!("{:?}", ActiveImage { slot: 0, crc: 0 }),
         format!("{:?}", counters()),
+        format!("{:?}", log_entry()),
         format!("{:?}", sample()),
         format!("{:?}", sample().place),
         format!("{:?}", Progress::default()),
@@ -133,6 +134,7 @@ fn enums_have_the_variants_of_the_table_in_its_order() {
         ("ResetCause", names(first(&causes))),
         ("DeviceClass", names(first(&DeviceClass::ALL))),
         ("Slot", names(first(&[Slot::Empty, Slot::Partial { length: 0, crc: 0, written: 0 }, Slot::Damaged, image]))),
+        ("Change", names(first(&Change::ALL))),
         ("Stage", names(first(&[Idle, Job, Program, Probe, Cut, Identify, Correct, Write, Ended]))),
     ];
     let rows = table(&page("link.md"), "Types", "| enum");

@@ -156,6 +156,11 @@ impl Rig {
         let Reply::Settings(settings) = self.ask(Ask::Settings).unwrap() else { panic!() };
         settings
     }
+    /// Number of the next entry of the log.
+    pub fn logged_next(&mut self) -> u32 {
+        let Reply::Log { next, .. } = self.ask(Ask::Log { from: u32::MAX }).unwrap() else { panic!() };
+        next
+    }
     pub fn done(&mut self, ask: Ask<'_>) -> Result<(), Denial> {
         self.ask(ask).map(|reply| assert_eq!(reply, Reply::Done))
     }

@@ -2,6 +2,7 @@
 
 mod arm;
 mod lines;
+mod log;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -113,6 +114,12 @@ enum Task {
         #[arg(long)]
         clear: bool,
     },
+    /// The log of changes: who changed what, and when. The device keeps the newest 64 at least.
+    Log {
+        /// From the entry of this number on.
+        #[arg(long, value_name = "N", default_value_t = 0)]
+        from: u32,
+    },
     /// Whose images the device takes.
     Keys,
     /// Lets the device trust the keys of a file; its button must have been held at its last reset.
@@ -148,9 +155,19 @@ enum Task {
     },
 }
 
+impl Task {
+    /// Whether it asks for what the device may log.
+    const fn changes(&self) -> bool {
+        !matches!(self, Self::List | Self::Info | Self::Monitor { .. } | Self::Log { .. } | Self::Keys)
+    }
+}
+
 /// Asks, and prints the answer.
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
     let mut client = connect(options.port.as_deref(), options.baud)?;
+    if options.task.changes() {
+        client.tell_time(unix_s())?;
+    }
     match &options.task {
         Task::List => {
             let slots = client.slots()?;
@@ -257,6 +274,11 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
             }
             terminal.tell(&status.counters, || counters_words(&status.counters))
         }
+        Task::Log { from } => {
+            let (entries, next) = client.log(*from)?;
+            let shown = log::Log::of(&entries, *from, next);
+            terminal.tell(&shown, || shown.words())
+        }
         Task::Keys => {
             let trust = trust(&mut client)?;
             terminal.tell(&trust, || trust.words())
@@ -313,8 +335,15 @@ fn connect(port: Option<&str>, baud: u32) -> Result<Client<Line>, BenchError> {
     };
     let line = Line::open(name, baud).map_err(|e| BenchError::open(name, &e))?;
     // Not the id of the request before this one, which the device remembers.
-    let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
-    Ok(Client::new(line, now.as_millis() as u16))
+    Ok(Client::new(line, since_1970().as_millis() as u16))
+}
+
+fn since_1970() -> Duration {
+    std::time::UNIX_EPOCH.elapsed().unwrap_or_default()
+}
+
+fn unix_s() -> u32 {
+    u32::try_from(since_1970().as_secs()).unwrap_or(u32::MAX)
 }
 
 /// A request without an answer of its own.

@@ -3,8 +3,8 @@
 
 use truepath_wire::image::{Binding, DeviceClass, ImageError, KeyId, KeyRing, PublicKey, SignatureError};
 use truepath_wire::link::{
-    ActiveImage, Ask, ComputeFailure, Counters, Denial, DeviceKeys, DeviceSetting, DeviceSettings, DeviceSettingsError,
-    DeviceStatus, Hello, Item, Progress, Reply, ResetCause, Slot, Stage, TraceSample,
+    ActiveImage, Ask, Change, ComputeFailure, Counters, Denial, DeviceKeys, DeviceSetting, DeviceSettings,
+    DeviceSettingsError, DeviceStatus, Hello, Item, LogEntry, Progress, Reply, ResetCause, Slot, Stage, TraceSample,
 };
 use truepath_wire::rewrite::{ArmRequest, AxisMap, Frame, Identity, Mode, Place, Reason, Refusal, Status};
 
@@ -46,6 +46,8 @@ pub fn asks() -> Vec<(&'static str, Ask<'static>)> {
         Ask::Keys,
         Ask::Provision(PublicKey([7; 32])),
         Ask::Revoke(KeyId([7; 8])),
+        Ask::Log { from: 300 },
+        Ask::Time { unix_s: 1_700_000_000 },
     ];
     all.into_iter().map(|ask| (ask_name(&ask), ask)).collect()
 }
@@ -76,6 +78,8 @@ fn ask_name(ask: &Ask<'_>) -> &'static str {
         Ask::Keys => "Keys",
         Ask::Provision(_) => "Provision",
         Ask::Revoke(_) => "Revoke",
+        Ask::Log { .. } => "Log",
+        Ask::Time { .. } => "Time",
     }
 }
 
@@ -132,6 +136,20 @@ pub fn keys() -> DeviceKeys {
     DeviceKeys { class: DeviceClass::Board, present: false, keys: KeyRing::default() }
 }
 
+pub fn log_entry() -> LogEntry {
+    LogEntry {
+        sequence: 301,
+        boots: 7,
+        uptime_us: 90_000_000,
+        host_s: Some(1_700_000_000),
+        by: None,
+        change: Change::Activated,
+        key: Some(KeyId([7; 8])),
+        value: 0x89ab_cdef,
+        counter: 17,
+    }
+}
+
 pub fn sample() -> TraceSample {
     TraceSample {
         sequence: 70_000,
@@ -160,6 +178,7 @@ pub fn replies() -> Vec<(&'static str, Reply<'static>)> {
         Reply::Recording { total: 200, from: 10, bytes: &[0x53, 1, 3, 0] },
         Reply::Progress(Progress { stage: Stage::Ended, permille: 1_000, result: Some(Err(failure)) }),
         Reply::Keys(keys()),
+        Reply::Log { next: 302, entries: [log_entry()].into_iter().collect() },
     ];
     all.into_iter().map(|reply| (reply_name(&reply), reply)).collect()
 }
@@ -177,6 +196,7 @@ fn reply_name(reply: &Reply<'_>) -> &'static str {
         Reply::Recording { .. } => "Recording",
         Reply::Progress(_) => "Progress",
         Reply::Keys(_) => "Keys",
+        Reply::Log { .. } => "Log",
     }
 }
 

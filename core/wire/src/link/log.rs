@@ -1,0 +1,109 @@
+//! The log of changes: who changed what on the device, and when.
+
+use core::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use crate::image::KeyId;
+
+/// Most entries in one [`Reply::Log`](super::Reply::Log).
+pub const LOG_ENTRIES: usize = 8;
+
+/// A change that was asked for over the configuration link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LogEntry {
+    /// Number of the entry, one more each time. One that is missing between two others was not kept.
+    pub sequence: u32,
+    /// Resets of the device up to then, as in `Hello`.
+    pub boots: u32,
+    /// Microseconds since that reset.
+    pub uptime_us: u64,
+    /// Seconds since 1970 by the clock that a host told ([`Ask::Time`](super::Ask::Time)) since that reset; nobody checks it.
+    pub host_s: Option<u32>,
+    /// Number of the key of who asked; nobody is known on an open device.
+    pub by: Option<KeyId>,
+    /// What was done.
+    pub change: Change,
+    /// Number of the key it is about: of the signer of an image, or the one that was provisioned or revoked.
+    pub key: Option<KeyId>,
+    /// What [`Change`] says of it, or 0.
+    pub value: u32,
+    /// Counter of a signed image, below which none of its pass is taken any more; else 0.
+    pub counter: u32,
+}
+
+/// What was done. The order of the variants is the number on the wire and in the flash.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Change {
+    /// An image was made the active one; the value is its checksum.
+    Activated,
+    /// The active image was taken out of use; the value is its checksum.
+    Deactivated,
+    /// Other settings; the value is the CRC-32 of their postcard encoding.
+    Configured,
+    /// A key was provisioned.
+    Provisioned,
+    /// A key was revoked.
+    Revoked,
+    /// A pass of a part was armed; the value is the part's serial.
+    Armed,
+    /// An arming was ended.
+    Disarmed,
+    /// The drives were acknowledged as disabled.
+    Acknowledged,
+    /// The counters were set to zero.
+    CountersCleared,
+    /// The recorder was let run again.
+    RecordingReleased,
+    /// A reset was asked for; the value is 1 if by the watchdog.
+    Restarted,
+}
+
+impl Change {
+    /// All of them, in the order of their numbers.
+    pub const ALL: [Self; 11] = [
+        Self::Activated,
+        Self::Deactivated,
+        Self::Configured,
+        Self::Provisioned,
+        Self::Revoked,
+        Self::Armed,
+        Self::Disarmed,
+        Self::Acknowledged,
+        Self::CountersCleared,
+        Self::RecordingReleased,
+        Self::Restarted,
+    ];
+    /// Its number.
+    pub const fn number(self) -> u8 {
+        self as u8
+    }
+    /// That of a number; none of a number that a later version may have written.
+    pub fn of(number: u8) -> Option<Self> {
+        Self::ALL.get(usize::from(number)).copied()
+    }
+}
+
+impl fmt::Display for LogEntry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let value = self.value;
+        match self.change {
+            Change::Activated => write!(f, "image {value:08x} activated")?,
+            Change::Deactivated => write!(f, "image {value:08x} taken out of use")?,
+            Change::Configured => write!(f, "settings {value:08x}")?,
+            Change::Provisioned => f.write_str("key provisioned")?,
+            Change::Revoked => f.write_str("key revoked")?,
+            Change::Armed => write!(f, "part {value} armed")?,
+            Change::Disarmed => f.write_str("disarmed")?,
+            Change::Acknowledged => f.write_str("drives acknowledged as disabled")?,
+            Change::CountersCleared => f.write_str("counters set to zero")?,
+            Change::RecordingReleased => f.write_str("recorder released")?,
+            Change::Restarted => f.write_str(if value == 0 { "restarted" } else { "restarted by the watchdog" })?,
+        }
+        match (self.change, self.key) {
+            (Change::Activated, Some(key)) => write!(f, ", signed by {key}, counter {}", self.counter),
+            (_, Some(key)) => write!(f, " {key}"),
+            (_, None) => Ok(()),
+        }
+    }
+}
