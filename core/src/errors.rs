@@ -7,13 +7,13 @@ use crate::gcode::{
 };
 use crate::image::{ImageError, SignatureError};
 use crate::job::{Buffer, JobError};
-use crate::link::LinkError;
+use crate::link::{AccessError, LinkError};
 use crate::probe::{ProbeErrorKind, Suspicion};
 
 pub use crate::units::errors::{Row, number};
 
 /// The rows of every enum of errors.
-pub const CATALOGUE: [&[Row]; 17] = [
+pub const CATALOGUE: [&[Row]; 18] = [
     GcodeErrorKind::CATALOGUE,
     ParameterError::CATALOGUE,
     CompensationError::CATALOGUE,
@@ -28,6 +28,7 @@ pub const CATALOGUE: [&[Row]; 17] = [
     Suspicion::CATALOGUE,
     ImageError::CATALOGUE,
     SignatureError::CATALOGUE,
+    AccessError::CATALOGUE,
     LinkError::CATALOGUE,
     JobError::CATALOGUE,
     Buffer::CATALOGUE,

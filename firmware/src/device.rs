@@ -24,7 +24,8 @@
 //!     probe: &mut probe,
 //!     meter: &ProgressMeter::new(),
 //! };
-//! let board = Board { name: "in process", last_reset: ResetCause::PowerOn, class: DeviceClass::Bench, present: false };
+//! let board = Board { name: "in process", last_reset: ResetCause::PowerOn, class: DeviceClass::Bench, present: false,
+//!     id: [0; 12], secret: None };
 //! let mut device = Device::start(flash, memory, board, 0);
 //!
 //! let mut packet = [0; PACKET_BYTES];

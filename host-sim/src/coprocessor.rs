@@ -1,11 +1,15 @@
 //! `device`: what a retrofit engineer asks of a coprocessor over its configuration link.
 
 use std::fmt::Write;
+use std::path::Path;
 
 use serde::Serialize;
-use truepath_bench::{BenchError, Client, Committed, Wire};
+use truepath_bench::{Access, BenchError, Client, Committed, Wire};
+use truepath_core::image::Rights;
 use truepath_core::link::{Ask, Denial, Item, Reply, ResetCause, SetpointFrame, Slot, setpoint_bytes};
 use truepath_core::rewrite::{AXES, Setpoint};
+use truepath_ground::diagnostics::InputError;
+use truepath_job::signing::Signer;
 
 /// Identity and sizes of a device.
 #[derive(Clone, Debug, Serialize)]
@@ -35,6 +39,11 @@ pub struct Trust {
     pub open: bool,
     /// The numbers of its keys.
     pub keys: Vec<String>,
+    /// What each of them is good for: the highest role it can log in with, and whether images that it signs are taken; nothing of
+    /// a firmware that knows no roles.
+    pub rights: Option<Vec<Rights>>,
+    /// The number of the key of who is logged in.
+    pub logged_in: Option<String>,
     /// The numbers of those that were revoked.
     pub revoked: Vec<String>,
     /// What kind of device it is.
@@ -52,8 +61,19 @@ impl Trust {
         } else if self.keys.is_empty() {
             "CLOSED: takes no image, every key was revoked; provision another one\n".to_owned()
         } else {
-            format!("takes images signed for {class} with {}\n", self.keys.join(" or "))
+            let signs = |at: usize| self.rights.as_ref().is_none_or(|rights| rights.get(at).is_some_and(|r| r.signs));
+            let signers = self.keys.iter().enumerate().filter(|(at, _)| signs(*at)).map(|(_, key)| key.as_str());
+            let signers = signers.collect::<Vec<_>>().join(" or ");
+            let none = if signers.is_empty() { "no key that is here" } else { "" };
+            format!("takes images signed for {class} with {signers}{none}\n")
         };
+        for (key, rights) in self.keys.iter().zip(self.rights.iter().flatten()) {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "key {key}: {rights}");
+        }
+        if let Some(key) = &self.logged_in {
+            let _ = writeln!(text, "logged in: {key}");
+        }
         if !self.revoked.is_empty() {
             // Writing to a String cannot fail.
             let _ = writeln!(text, "revoked for ever: {}", self.revoked.join(", "));
@@ -65,15 +85,28 @@ impl Trust {
     }
 }
 
+/// Access to a device with the private key of a file.
+///
+/// # Errors
+/// As [`Signer::read`].
+pub fn access(path: &Path) -> Result<Access, InputError> {
+    let signer = Signer::read(path, &[])?;
+    Ok(Access::new(&signer.public(), move |message| signer.sign(message)))
+}
+
 /// Asks whose images a device takes.
 ///
 /// # Errors
 /// As [`Client::ask`].
 pub fn trust<W: Wire>(client: &mut Client<W>) -> Result<Trust, BenchError> {
     let keys = client.keys()?;
+    let session = client.session()?;
+    let count = keys.keys.iter().count();
     Ok(Trust {
         open: keys.keys.is_open(),
         keys: keys.keys.iter().map(|key| key.id().to_string()).collect(),
+        rights: session.map(|session| session.rights.into_iter().take(count).collect()),
+        logged_in: session.and_then(|session| session.key).map(|key| key.to_string()),
         revoked: keys.keys.revoked().map(|key| key.to_string()).collect(),
         class: keys.class.name(),
         provisioning: keys.present,

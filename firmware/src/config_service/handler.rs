@@ -2,9 +2,10 @@
 
 use embedded_storage::nor_flash::NorFlash;
 use truepath_core::image::DeviceClass;
-use truepath_core::link::{ActiveImage, Denial, DeviceSettings, Item, Progress, ResetCause, Slot};
+use truepath_core::link::{ActiveImage, DEVICE_ID_BYTES, Denial, DeviceSettings, Item, Progress, ResetCause, Slot};
 use truepath_core::rewrite::Mode;
 
+use super::session::Access;
 use crate::computation::{Computation, ProgressMeter};
 use crate::ledger::Ledger;
 use crate::ram_upload::RamUploads;
@@ -41,6 +42,10 @@ pub struct Board {
     pub class: DeviceClass,
     /// Whether its button was held at the reset: somebody is there who may provision and revoke keys.
     pub present: bool,
+    /// Its number, unlike that of every other board; zeros if it has none.
+    pub id: [u8; DEVICE_ID_BYTES],
+    /// Drawn by its random number generator at the start, if it has one: nobody else knows it.
+    pub secret: Option<[u8; 32]>,
 }
 
 /// Everything the service keeps, apart from how requests come.
@@ -53,6 +58,7 @@ pub(super) struct Handler<'a, F> {
     pub now_us: u64,
     /// The time that a host told, seconds since 1970, and when it did.
     pub told_time: Option<(u32, u64)>,
+    pub access: Access,
     /// The flash did not take an entry of the log.
     pub log_fails: bool,
     /// What the slots hold, without who is active.

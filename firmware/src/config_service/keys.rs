@@ -5,8 +5,8 @@
 //! beside the ledger.
 
 use embedded_storage::nor_flash::NorFlash;
-use truepath_core::image::{KeyId, KeyRingError, PublicKey};
-use truepath_core::link::{Change, Denial, DeviceKeys, LogEntry, Reply};
+use truepath_core::image::{KeyId, KeyRingError, PublicKey, Rights};
+use truepath_core::link::{AccessError, Change, Denial, DeviceKeys, LogEntry, Reply};
 use truepath_core::rewrite::Mode;
 
 use super::handler::Handler;
@@ -18,6 +18,7 @@ impl From<NotProvisioned> for Denial {
         match error {
             NotProvisioned::Ring(KeyRingError::Key(error)) => Self::Untrusted(error),
             NotProvisioned::Ring(KeyRingError::Full) => Self::KeysFull,
+            NotProvisioned::Ring(KeyRingError::OtherRights { key }) => Self::Access(AccessError::OtherRights { key }),
             NotProvisioned::Flash(failed) => failed.into(),
         }
     }
@@ -30,14 +31,19 @@ impl<'a, F: NorFlash> Handler<'a, F> {
 
     /// Trusts one more key. An image in use that is not signed with one of the keys is in use no more.
     #[inline(never)]
-    pub fn provision<'s>(&mut self, key: PublicKey, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+    pub fn provision<'s>(
+        &mut self,
+        key: PublicKey,
+        rights: Rights,
+        servo: &mut impl ServoAccess<'a>,
+    ) -> Result<Reply<'s>, Denial> {
         self.attended(servo)?;
         let mut next = *self.ledger.keys();
-        next.add(key).map_err(NotProvisioned::Ring)?;
+        next.add_with(key, rights).map_err(NotProvisioned::Ring)?;
         if next != *self.ledger.keys() {
             self.note(LogEntry { key: Some(key.id()), ..self.entry(Change::Provisioned) })?;
         }
-        self.ledger.provision(&mut self.flash, key)?;
+        self.ledger.provision(&mut self.flash, key, rights)?;
         self.verify_again(servo)
     }
 
@@ -49,6 +55,7 @@ impl<'a, F: NorFlash> Handler<'a, F> {
             self.note(LogEntry { key: Some(key), ..self.entry(Change::Revoked) })?;
         }
         self.ledger.revoke(&mut self.flash, key)?;
+        self.access.revoke(key);
         self.verify_again(servo)
     }
 

@@ -10,7 +10,7 @@ use super::handler::{Handler, idle};
 use crate::servo::ServoAccess;
 
 impl<'a, F: NorFlash> Handler<'a, F> {
-    /// An entry of now, by whoever asks.
+    /// An entry of now; who asks is put in when it is kept.
     pub fn entry(&self, change: Change) -> LogEntry {
         let since_us = |at: u64| self.now_us.saturating_sub(at);
         let told = |(unix_s, at): (u32, u64)| unix_s.saturating_add((since_us(at) / 1_000_000) as u32);
@@ -20,6 +20,7 @@ impl<'a, F: NorFlash> Handler<'a, F> {
             uptime_us: since_us(self.started_us),
             host_s: self.told_time.map(told),
             by: None,
+            refused: 0,
             change,
             key: None,
             value: 0,
@@ -28,12 +29,14 @@ impl<'a, F: NorFlash> Handler<'a, F> {
     }
     /// Writes an entry ahead of what it tells of.
     pub fn note(&mut self, entry: LogEntry) -> Result<(), Denial> {
+        let entry = self.access.sign(entry);
         self.ledger.note(&mut self.flash, entry)?;
         self.log_fails = false;
         Ok(())
     }
     /// Keeps an entry until the flash may be written.
     pub fn keep(&mut self, entry: LogEntry) {
+        let entry = self.access.sign(entry);
         self.ledger.keep(entry);
     }
     /// Writes the entries that wait, if the flash may be written. One that it does not take is tried again with the next that

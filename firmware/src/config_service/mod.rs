@@ -10,6 +10,7 @@
 //! only read, and those that were denied, are simply carried out again. A reset forgets this: what was on the way then
 //! has to be asked for (`Status`, `List`, `Check`).
 
+mod access;
 mod activate;
 mod compute;
 mod handler;
@@ -17,13 +18,15 @@ mod keys;
 mod log;
 mod operate;
 mod report;
+mod session;
 mod upload;
 
 use embedded_storage::nor_flash::NorFlash;
 use heapless::Vec;
+use truepath_core::image::Rights;
 use truepath_core::link::{
     ActiveImage, Ask, CHUNK_BYTES, Change, Deframer, Denial, Framed, Item, LinkError, LogEntry, PACKET_BYTES, Progress,
-    Reply, Request, Response, decode, encode,
+    Reply, Request, Response, decode_request, encode,
 };
 use truepath_core::rewrite::{Mode, Rewriter};
 
@@ -77,6 +80,7 @@ impl<'a, F: NorFlash> ConfigService<'a, F> {
             started_us: now_us,
             now_us,
             told_time: None,
+            access: session::Access::default(),
             log_fails: false,
             slots,
             active: None,
@@ -151,14 +155,14 @@ impl<'a, F: NorFlash> ConfigService<'a, F> {
             let mut copy: Vec<u8, PACKET_BYTES> = Vec::new();
             // It has room: the deframer takes no longer packet.
             let _ = copy.extend_from_slice(packet);
-            let request = decode::<Request>(packet);
+            let request = decode_request(packet);
             let damaged = !matches!(request, Ok(_) | Err(LinkError::Content { .. }));
             servo.with(|servo| servo.count_message(damaged));
             if damaged {
                 continue;
             }
-            let mut still_so = |ask: &Ask<'_>| holds(ask, servo.with(|servo| servo.mode()));
-            let remembered = answered.filter(|_| again && request.as_ref().is_ok_and(|r| still_so(&r.ask)));
+            let mut still_so = |ask: &Ask<'_>| holds(ask, servo.with(|servo| servo.mode()), handler.is_logged_in());
+            let remembered = answered.filter(|_| again && request.as_ref().is_ok_and(|(r, _)| still_so(&r.ask)));
             if let Some(bytes) = remembered {
                 send(answer.get(..bytes).unwrap_or(&[]));
                 continue;
@@ -167,8 +171,11 @@ impl<'a, F: NorFlash> ConfigService<'a, F> {
             handler.now_us = now_us;
             let mut scratch = [0; CHUNK_BYTES];
             let (response, keep, restart) = match request {
-                Ok(Request { id, ask }) => {
-                    let answer = handler.carry_out(&ask, now_us, servo, &mut scratch);
+                Ok((Request { id, ask }, session)) => {
+                    let answer = match handler.permit(&ask, session) {
+                        Ok(()) => handler.carry_out(&ask, now_us, servo, &mut scratch),
+                        Err(denial) => Err(denial),
+                    };
                     let restart = match (&ask, &answer) {
                         (Ask::Restart { watchdog }, Ok(_)) => Some(Restart { watchdog: *watchdog }),
                         _ => None,
@@ -238,22 +245,28 @@ impl<'a, F: NorFlash> Handler<'a, F> {
                 Ok(Reply::Done)
             }
             Ask::Keys => Ok(Reply::Keys(self.keys())),
-            Ask::Provision(key) => self.provision(key, servo),
+            Ask::Provision(key) => self.provision(key, Rights::default(), servo),
             Ask::Revoke(key) => self.revoke(key, servo),
             Ask::Log { from } => Ok(self.log(from, servo)),
             Ask::Time { unix_s } => {
                 self.told_time = Some((unix_s, now_us));
                 Ok(Reply::Done)
             }
+            Ask::Challenge => Ok(self.challenge()),
+            Ask::Login { key, role, signature } => self.login(key, role, &signature),
+            Ask::Logout => Ok(self.logout()),
+            Ask::Session => Ok(Reply::Session(self.session())),
+            Ask::ProvisionAs { key, rights } => self.provision(key, rights, servo),
         }
     }
 }
 
-/// Whether what the answer to a request said of the mode is still so. Only such an answer is given again: an arming
+/// Whether what the answer to a request said of the mode, or of the session, is still so. Only such an answer is given again: an arming
 /// that an emergency stop has ended meanwhile must not be called done. Of the other requests nothing but a further
 /// request, or a reset, undoes what was done.
-const fn holds(ask: &Ask<'_>, mode: Mode) -> bool {
+const fn holds(ask: &Ask<'_>, mode: Mode, logged_in: bool) -> bool {
     match ask {
+        Ask::Login { .. } => logged_in,
         Ask::AcknowledgeDrivesDisabled => matches!(mode, Mode::Bypass),
         Ask::Arm(_) => matches!(mode, Mode::Armed),
         _ => true,
@@ -273,5 +286,6 @@ const fn changes(ask: &Ask<'_>) -> bool {
             | Ask::Progress
             | Ask::Keys
             | Ask::Log { .. }
+            | Ask::Session
     )
 }

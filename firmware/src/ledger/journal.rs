@@ -18,7 +18,7 @@
 //! Fields of the head word ([`sealed`], `TPL2`): sequence, bytes of the payload, CRC-32 of the payload, zeros.
 
 use embedded_storage::nor_flash::NorFlash;
-use truepath_core::image::{Counted, KeyId, KeyRing, PublicKey, crc32};
+use truepath_core::image::{Counted, KeyId, KeyRing, PublicKey, Rights, crc32};
 use truepath_core::link::LogEntry;
 
 use super::place::{ALL_PLACES, PLACE_BYTES, PLACES};
@@ -128,8 +128,8 @@ impl Journal {
     }
 
     /// Writes a key beside those of the sector of the newest record; whether that went well.
-    pub fn write_key<F: NorFlash>(&self, flash: &mut F, key: &PublicKey) -> bool {
-        self.current.is_some_and(|sector| keys::write(flash, sector, key))
+    pub fn write_key<F: NorFlash>(&self, flash: &mut F, key: &PublicKey, rights: Rights) -> bool {
+        self.current.is_some_and(|sector| keys::write(flash, sector, key, rights))
     }
     /// Writes beside them that a key is taken back; whether that went well.
     pub fn write_revoked<F: NorFlash>(&self, flash: &mut F, key: KeyId) -> bool {

@@ -1,6 +1,7 @@
 //! The page of keys: the last place of each sector of the ledger, write-once. It has places of two words.
 //!
-//! A key takes two words: the 32 bytes of the public key, then its seal ([`sealed`], `TPK1`: CRC-32 of the key, zeros). The
+//! A key takes two words: the 32 bytes of the public key, then its seal ([`sealed`], `TPK1`: CRC-32 of the key, its rights
+//! ([`Rights::bits`]: 0, as before there were rights, is everything), zeros). The
 //! seal is programmed last; a key without it is none, and its two words are passed over. A key is taken back by a further
 //! place, of which only the first word is programmed (`TPR1`: number of the key in two fields, zeros); both words count
 //! wherever they lie. Nothing here is ever programmed twice: when the journal begins a sector it erases, it writes all keys
@@ -11,10 +12,10 @@
 //! still finds the keys.
 
 use embedded_storage::nor_flash::NorFlash;
-use truepath_core::image::{KeyId, KeyRing, PublicKey, crc32};
+use truepath_core::image::{KeyId, KeyRing, PublicKey, Rights, crc32};
 
 use super::place::{ALL_PLACES, PLACE_BYTES};
-use crate::flash::{BLANK, LEDGER_SECTORS, WORD_BYTES, Word, sealed, sector_start};
+use crate::flash::{BLANK, LEDGER_SECTORS, WORD_BYTES, Word, opened, sealed, sector_start};
 
 const MAGIC: [u8; 4] = *b"TPK1";
 const REVOKED: [u8; 4] = *b"TPR1";
@@ -27,8 +28,8 @@ fn pairs(sector: usize) -> impl Iterator<Item = u32> {
     (page..page + PLACE_BYTES as u32).step_by(PAIR_BYTES)
 }
 
-fn seal(key: &PublicKey) -> [u8; WORD_BYTES] {
-    sealed(MAGIC, [crc32(&key.0), 0, 0, 0, 0, 0])
+fn seal(key: &PublicKey, rights: Rights) -> [u8; WORD_BYTES] {
+    sealed(MAGIC, [crc32(&key.0), rights.bits(), 0, 0, 0, 0])
 }
 
 fn revocation(KeyId([a, b, c, d, e, f, g, h]): KeyId) -> [u8; WORD_BYTES] {
@@ -48,17 +49,20 @@ pub(super) fn read<F: NorFlash>(flash: &mut F) -> KeyRing {
     }
     for at in (0..LEDGER_SECTORS.count).flat_map(pairs) {
         let Some(key) = Word::read(flash, at).written().map(PublicKey) else { continue };
-        if Word::read(flash, at + WORD_BYTES as u32) == Word::Written(seal(&key)) {
+        let seal = Word::read(flash, at + WORD_BYTES as u32).written().and_then(|word| opened(MAGIC, &word));
+        if let Some([crc, rights, ..]) = seal
+            && crc == crc32(&key.0)
+        {
             // One that is in both sectors counts once. What was sealed had passed the check, and may be revoked.
-            let _ = ring.add(key);
+            let _ = ring.add_with(key, Rights::of(rights));
         }
     }
     ring
 }
 
 /// Writes a key behind those of a sector and reads it back; whether that went well.
-pub(super) fn write<F: NorFlash>(flash: &mut F, sector: usize, key: &PublicKey) -> bool {
-    key.0 != BLANK && write_pair(flash, sector, &[key.0, seal(key)])
+pub(super) fn write<F: NorFlash>(flash: &mut F, sector: usize, key: &PublicKey, rights: Rights) -> bool {
+    key.0 != BLANK && write_pair(flash, sector, &[key.0, seal(key, rights)])
 }
 
 /// Writes that a key is taken back, and reads it back.
@@ -79,5 +83,6 @@ fn write_pair<F: NorFlash>(flash: &mut F, sector: usize, words: &[[u8; WORD_BYTE
 
 /// Writes all of a ring into a sector that was erased.
 pub(super) fn write_all<F: NorFlash>(flash: &mut F, sector: usize, ring: &KeyRing) -> bool {
-    ring.iter().all(|key| write(flash, sector, key)) && ring.revoked().all(|key| write_revoked(flash, sector, key))
+    let known = |key: &PublicKey| ring.find(key.id()).is_some_and(|(key, rights)| write(flash, sector, key, rights));
+    ring.iter().all(known) && ring.revoked().all(|key| write_revoked(flash, sector, key))
 }

@@ -2,7 +2,7 @@
 //! entry.
 //!
 //! The first word of an entry is its seal ([`sealed`], `TPE1`): sequence; boots; change, what is there of `by`, `key` and
-//! the host's time (bits 8 to 10); the host's time; value; CRC-32 of the second word. The second word: 0 microseconds
+//! the host's time (bits 8 to 10), failed logins (bits 16 to 31); the host's time; value; CRC-32 of the second word. The second word: 0 microseconds
 //! since the reset, 8 `by`, 16 `key`, 24 counter, 28 zeros. The seal is programmed last; an entry without it is none.
 //!
 //! An entry is written before what it tells of happens, so there is no change without one; a change that the power or the
@@ -67,7 +67,7 @@ fn encode(entry: &LogEntry) -> [[u8; WORD_BYTES]; 2] {
     word[24..28].copy_from_slice(&entry.counter.to_le_bytes());
     let there = [entry.by.is_some(), entry.key.is_some(), entry.host_s.is_some()];
     let there = (8..).zip(there).fold(0, |bits, (bit, is)| bits | u32::from(is) << bit);
-    let what = u32::from(entry.change.number()) | there;
+    let what = u32::from(entry.change.number()) | there | u32::from(entry.refused) << 16;
     let fields = [entry.sequence, entry.boots, what, entry.host_s.unwrap_or(0), entry.value, crc32(&word)];
     [sealed(MAGIC, fields), word]
 }
@@ -88,6 +88,7 @@ pub(super) fn read<F: NorFlash>(flash: &mut F, at: u32) -> Option<LogEntry> {
         change: Change::of(what as u8)?,
         key: there(9).then_some(KeyId(*key)),
         value,
+        refused: (what >> 16) as u16,
         counter: u32::from_le_bytes(counter),
     })
 }

@@ -14,7 +14,7 @@ mod place;
 use embedded_storage::nor_flash::NorFlash;
 use serde::{Deserialize, Serialize};
 use truepath_core::image::{
-    Binding, Counted, DeviceClass, KeyId, KeyRing, KeyRingError, PublicKey, SignatureError, Signed,
+    Binding, Counted, DeviceClass, KeyId, KeyRing, KeyRingError, PublicKey, Rights, SignatureError, Signed,
 };
 use truepath_core::link::{ActiveImage, DeviceSettings, LogEntry};
 use truepath_core::rewrite::{Spent, SpentList};
@@ -123,10 +123,15 @@ impl Ledger {
     /// # Errors
     /// The key cannot be used or there is no room for it: nothing has changed. The flash did not take it: it is not
     /// trusted now, and may be after the next reset.
-    pub fn provision<F: NorFlash>(&mut self, flash: &mut F, key: PublicKey) -> Result<(), NotProvisioned> {
+    pub fn provision<F: NorFlash>(
+        &mut self,
+        flash: &mut F,
+        key: PublicKey,
+        rights: Rights,
+    ) -> Result<(), NotProvisioned> {
         let before = self.keys;
-        self.keys.add(key).map_err(NotProvisioned::Ring)?;
-        let written = self.keys == before || self.journal.write_key(flash, &key);
+        self.keys.add_with(key, rights).map_err(NotProvisioned::Ring)?;
+        let written = self.keys == before || self.journal.write_key(flash, &key, rights);
         self.keep_keys(flash, written, before)
     }
     /// Trusts a key no more, for ever. Takes one programmed word.

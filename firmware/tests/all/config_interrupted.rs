@@ -74,7 +74,14 @@ fn silence_between_any_two_steps_of_a_request_leaves_the_device_off_and_in_order
         probe: lent(64),
         meter: Box::leak(Box::new(ProgressMeter::new())),
     };
-    let board = Board { name: "test", last_reset: ResetCause::PowerOn, class: DeviceClass::Bench, present: false };
+    let board = Board {
+        name: "test",
+        last_reset: ResetCause::PowerOn,
+        class: DeviceClass::Bench,
+        present: false,
+        id: [0; 12],
+        secret: None,
+    };
     let (mut service, servo) = ConfigService::start(bank(), memory, board, 0);
     let mut servo = Interrupted { servo, left: None, now_us: 0 };
     ask(&mut service, &mut servo, 60, Ask::Configure(DeviceSettings::at_1_khz())).unwrap();

@@ -16,6 +16,7 @@ mod wire_messages;
 mod wire_modes;
 mod wire_power;
 mod wire_reset;
+mod wire_roles;
 mod wire_setpoints;
 mod wire_settings;
 mod wire_signed;

@@ -1,8 +1,8 @@
 //! Counters of signed images and revoked keys over the configuration link, with power that fails at any moment.
 
 use crate::wire_support;
-use truepath_core::image::{Binding, DeviceClasses, KeyId, MOST_KEYS_EVER, SignatureError};
-use truepath_core::link::{Ask, Denial, DeviceKeys, DeviceSettings, Reply, ResetCause};
+use truepath_core::image::{Binding, DeviceClasses, KeyId, MOST_KEYS_EVER, Role, SignatureError};
+use truepath_core::link::{AccessError, Ask, Denial, DeviceKeys, DeviceSettings, Reply, ResetCause};
 use truepath_core::rewrite::Mode;
 use truepath_fw::flash::{Cut, LEDGER_SECTORS, Moment, SECTOR_BYTES};
 use truepath_fw::ledger::{FIRST_COUNTER_PLACE, MOST_COUNTED, PLACES};
@@ -263,9 +263,9 @@ fn with_all_keys_revoked_the_device_is_not_open_but_closed_for_good() {
     for _ in 0..2 {
         let now = keys(&mut rig).keys;
         assert_eq!((now.is_open(), now.iter().count(), now.revoked().count()), (false, 0, MOST_KEYS_EVER));
-        let missing = Err(Denial::Untrusted(SignatureError::Missing));
-        assert_eq!(rig.upload(&image_of(straight(0))).map(|_| ()), missing);
-        assert_eq!(rig.done(Ask::Compute), missing);
+        let closed = Err(Denial::Access(AccessError::Role { needed: Role::Engineer }));
+        assert_eq!(rig.upload(&image_of(straight(0))).map(|_| ()), closed);
+        assert_eq!(rig.done(Ask::Compute), closed);
         assert!(rig.upload(&image(1, 1)).is_err());
         rig.reset(ResetCause::PowerOn);
     }

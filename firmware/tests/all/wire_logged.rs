@@ -1,7 +1,7 @@
 //! The log of changes over the configuration link, with power that fails at any moment.
 
 use crate::wire_support;
-use truepath_core::image::{DeviceClasses, KeyId};
+use truepath_core::image::{DeviceClasses, KeyId, Role};
 use truepath_core::link::{Ask, Change, Denial, DeviceSettings, LogEntry, Reply, ResetCause};
 use truepath_core::rewrite::Mode;
 use truepath_fw::flash::{Cut, LEDGER_SECTORS, Moment, SECTOR_BYTES, WordState};
@@ -49,10 +49,10 @@ fn every_change_is_told_with_who_what_and_when_also_behind_resets() {
     rig.done(Ask::ReleaseRecording).unwrap();
     rig.wait(100);
     rig.done(Ask::Deactivate).unwrap();
-    rig.done(Ask::Revoke(key.id())).unwrap();
     rig.done(Ask::Restart { watchdog: true }).unwrap();
     rig.reset(ResetCause::Watchdog);
     rig.done(Ask::Configure(settings(2))).unwrap();
+    rig.done(Ask::Revoke(key.id())).unwrap();
 
     let (next, entries) = log(&mut rig);
     let told = |entry: &LogEntry| (entry.change, entry.key, entry.counter);
@@ -61,6 +61,7 @@ fn every_change_is_told_with_who_what_and_when_also_behind_resets() {
         (Change::Configured, None, 0),
         (Change::Configured, None, 0),
         (Change::Provisioned, id, 0),
+        (Change::LoggedIn, None, 0),
         (Change::Activated, id, 77),
         (Change::Acknowledged, None, 0),
         (Change::Armed, None, 0),
@@ -68,13 +69,16 @@ fn every_change_is_told_with_who_what_and_when_also_behind_resets() {
         (Change::CountersCleared, None, 0),
         (Change::RecordingReleased, None, 0),
         (Change::Deactivated, None, 0),
-        (Change::Revoked, id, 0),
         (Change::Restarted, None, 0),
+        (Change::LoggedIn, None, 0),
         (Change::Configured, None, 0),
+        (Change::Revoked, id, 0),
     ];
     assert_eq!(entries.iter().map(told).collect::<Vec<_>>(), expected);
     assert!(entries.iter().map(|entry| entry.sequence).eq(1..next), "no number is missing");
-    assert_eq!(entries.iter().map(|entry| entry.boots).collect::<Vec<_>>(), [vec![1; 12], vec![2]].concat());
+    assert_eq!(entries.iter().map(|entry| entry.boots).collect::<Vec<_>>(), [vec![1; 12], vec![2; 3]].concat());
+    let by: Vec<_> = entries.iter().map(|entry| entry.by).collect();
+    assert_eq!(by, [vec![None; 3], vec![id; 12]].concat(), "nobody is known before there is a key");
     let of = |change| entries.iter().find(|entry| entry.change == change).unwrap();
     assert_eq!([Change::Activated, Change::Deactivated].map(|change| of(change).value), [crc; 2]);
     assert_eq!([Change::Armed, Change::Restarted].map(|change| of(change).value), [4_711, 1]);
@@ -89,10 +93,14 @@ fn every_change_is_told_with_who_what_and_when_also_behind_resets() {
 fn what_changes_nothing_and_what_is_refused_is_no_entry() {
     let image = image_of(straight(0));
     let mut rig = Rig::with_image(&image);
-    rig.done(Ask::Provision(public(&owner(1)))).unwrap();
+    for seed in [1, 2] {
+        rig.done(Ask::Provision(public(&owner(seed)))).unwrap();
+    }
     rig.done(Ask::Revoke(public(&owner(1)).id())).unwrap();
+    rig.log_in(&owner(2), Role::Engineer).unwrap();
     let before = changes(&mut rig);
-    assert_eq!(before, [Change::Configured, Change::Activated, Change::Provisioned, Change::Revoked]);
+    use Change::{Activated, Configured, LoggedIn, Provisioned, Revoked};
+    assert_eq!(before, [Configured, Activated, Provisioned, Provisioned, Revoked, LoggedIn]);
     rig.done(Ask::Configure(DeviceSettings::at_1_khz())).unwrap();
     rig.done(Ask::Revoke(public(&owner(1)).id())).unwrap();
     assert!(rig.done(Ask::Revoke(KeyId([3; 8]))).is_err());
@@ -101,9 +109,8 @@ fn what_changes_nothing_and_what_is_refused_is_no_entry() {
     assert!(rig.done(Ask::Configure(DeviceSettings { axes: 9, ..DeviceSettings::at_1_khz() })).is_err());
     assert!(rig.arm(1).is_err() && rig.done(Ask::Disarm).is_err());
     assert!(rig.done(Ask::AcknowledgeDrivesDisabled).is_err());
-    let packet = request(500, Ask::Deactivate);
     for _ in 0..3 {
-        rig.raw(&packet);
+        rig.done(Ask::Deactivate).unwrap();
     }
     assert_eq!(changes(&mut rig), [&before[..], &[Change::Deactivated]].concat());
 }

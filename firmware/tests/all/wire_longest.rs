@@ -6,9 +6,10 @@ use std::rc::Rc;
 
 use crate::wire_support;
 use embedded_storage::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
-use truepath_core::image::DeviceClass;
+use truepath_core::image::{DeviceClass, Role};
 use truepath_core::link::{
     Ask, CHUNK_BYTES, DeviceSettings, Item, PACKET_BYTES, Reply, Request, ResetCause, Response, Slot, decode, encode,
+    encode_request,
 };
 use truepath_fw::computation::ProgressMeter;
 use truepath_fw::config_service::{Board, IMAGE_BYTES, Memory};
@@ -67,6 +68,8 @@ struct Meter {
     device: Device<'static, Counted>,
     work: Work,
     id: u16,
+    session: Option<u64>,
+    challenge: Option<([u8; 12], [u8; 32])>,
     /// Of each kind of request the most of each work.
     most: Vec<(String, [usize; 3])>,
 }
@@ -89,21 +92,32 @@ impl Meter {
             meter: Box::leak(Box::new(ProgressMeter::new())),
         };
         let work = Work::default();
-        let board = Board { name: "test", last_reset: ResetCause::PowerOn, class: DeviceClass::Bench, present };
+        let board = Board {
+            name: "test",
+            last_reset: ResetCause::PowerOn,
+            class: DeviceClass::Bench,
+            present,
+            id: [3; 12],
+            secret: None,
+        };
         let device = Device::start(Counted(bank, Rc::clone(&work)), memory, board, 0);
-        Self { device, work, id: 0, most: vec![] }
+        Self { device, work, id: 0, session: None, challenge: None, most: vec![] }
     }
 
     fn ask(&mut self, ask: Ask<'_>) {
         self.id += 1;
         let mut packet = [0; PACKET_BYTES];
-        let used = encode(&Request { id: self.id, ask }, &mut packet).unwrap();
+        let used = encode_request(&Request { id: self.id, ask }, self.session, &mut packet).unwrap();
         self.work.set([0; 3]);
         let mut answer = vec![];
         self.device.config_bytes(&packet[..used], 0, |bytes| answer.extend_from_slice(bytes));
         answer.pop();
         let response: Response<'_> = decode(&mut answer).unwrap();
-        assert!(response.answer.is_ok(), "{:?}", response.answer);
+        match response.answer.unwrap() {
+            Reply::Challenge { device, nonce, .. } => self.challenge = Some((device, nonce)),
+            Reply::LoggedIn { session } => self.session = Some(session),
+            _ => {}
+        }
         let kind = format!("{ask:?}").split([' ', '(']).next().unwrap().to_owned();
         let work = self.work.get();
         match self.most.iter_mut().find(|(of, _)| *of == kind) {
@@ -198,6 +212,9 @@ fn counters_of_as_many_passes_as_there_are_cost_a_request_a_bounded_reading() {
     for seed in 1..=4 {
         meter.ask(Ask::Provision(public(&owner(seed))));
     }
+    meter.ask(Ask::Challenge);
+    let (device, nonce) = meter.challenge.unwrap();
+    meter.ask(login(&owner(1), Role::Engineer, &device, &nonce));
     // So often that the page of counters is used up, and the sector is changed with all of them in it.
     for k in 0..300 {
         let image = counted_image(k % 64, 1_000 + k);

@@ -1,6 +1,7 @@
 //! Which request is taken in which mode: the table of the document against the device, request by request.
 
 use crate::wire_support;
+use truepath_core::image::{Rights, Role};
 use truepath_core::link::{ActiveImage, Ask, Denial, DeviceSettings, Item, Slot};
 use truepath_core::rewrite::{ArmRequest, Flags, Frame, Identity, Mode, Refusal};
 use wire_support::part::{self, FEED, PASS, straight};
@@ -21,7 +22,7 @@ fn table() -> Vec<(usize, String, Vec<Mode>)> {
     lines.take_while(|line| line.starts_with('|')).map(row).collect()
 }
 
-fn asks(image: &[u8]) -> Vec<Ask<'_>> {
+pub fn asks(image: &[u8]) -> Vec<Ask<'_>> {
     let request = ArmRequest { binding: part::settings().binding, part_serial: 5, frame: Frame::identity() };
     vec![
         Ask::Hello,
@@ -50,6 +51,11 @@ fn asks(image: &[u8]) -> Vec<Ask<'_>> {
         Ask::Revoke(public(&owner(1)).id()),
         Ask::Log { from: 0 },
         Ask::Time { unix_s: 1_700_000_000 },
+        Ask::Challenge,
+        Ask::Login { key: public(&owner(1)).id(), role: Role::Operate, signature: [[1; 32]; 2] },
+        Ask::Logout,
+        Ask::Session,
+        Ask::ProvisionAs { key: public(&owner(1)), rights: Rights { role: Role::Operate, signs: false } },
     ]
 }
 

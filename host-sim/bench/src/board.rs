@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::access::Access;
 use super::client::Client;
 use super::error::BenchError;
 use super::watch::Watch;
@@ -45,6 +46,12 @@ pub trait Board {
     fn is_stepped(&self) -> bool;
     /// A client of its configuration link.
     fn client(&mut self) -> Client<&mut dyn Wire>;
+    /// Logs in with a key from now on, where the device asks for it; or does not any more.
+    fn use_access(&mut self, _access: Option<Access>) {}
+    /// The number of its session.
+    fn session(&self) -> Option<u64> {
+        None
+    }
     /// The first id for a new series of requests, far from those of the series before: a device takes a repeated id
     /// for a repeated request.
     fn first_id(&mut self) -> u16;

@@ -3,6 +3,7 @@
 use std::io;
 use std::time::{Duration, Instant};
 
+use super::access::Access;
 use super::board::{Board, Event, Exchange, IDS};
 use super::client::Client;
 use super::error::BenchError;
@@ -28,6 +29,7 @@ pub const BATCH_BYTES: usize = 2 << 20;
 pub struct BulkBoard<B> {
     wire: BulkWire<B>,
     first_id: u16,
+    access: Option<Access>,
 }
 
 /// The configuration link as a stream.
@@ -40,7 +42,7 @@ struct BulkWire<B> {
 impl<B: Bulk> BulkBoard<B> {
     /// A board.
     pub fn new(bulk: B) -> Self {
-        Self { wire: BulkWire { bulk, arrived: vec![] }, first_id: 0 }
+        Self { wire: BulkWire { bulk, arrived: vec![] }, first_id: 0, access: None }
     }
 }
 
@@ -70,7 +72,15 @@ impl<B: Bulk> Board for BulkBoard<B> {
     }
     fn client(&mut self) -> Client<&mut dyn Wire> {
         let first = self.first_id();
-        Client::new(&mut self.wire, first)
+        let access = self.access.clone();
+        let wire: &mut dyn Wire = &mut self.wire;
+        Client::new(wire, first).with_access(access)
+    }
+    fn use_access(&mut self, access: Option<Access>) {
+        self.access = access;
+    }
+    fn session(&self) -> Option<u64> {
+        self.access.as_ref().and_then(Access::session)
     }
     fn first_id(&mut self) -> u16 {
         self.first_id = self.first_id.wrapping_add(IDS);

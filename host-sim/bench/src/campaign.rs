@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use fnv::FnvHasher;
 use truepath_core::image::Image;
 use truepath_core::link::{
-    Ask, Counters, Denial, DeviceSettings, MAX_SETPOINT_BYTES, PACKET_BYTES, Request, SetpointFrame, encode,
+    Ask, Counters, Denial, DeviceSettings, MAX_SETPOINT_BYTES, PACKET_BYTES, Request, SetpointFrame, encode_request,
 };
 use truepath_core::rewrite::{Mode, Output, Refusal, Setpoint};
 
@@ -74,6 +74,7 @@ pub struct Campaign<'a> {
     pub(super) expectation: Expectation<'a>,
     pub(super) judge: Judge,
     id: u16,
+    session: Option<u64>,
     tick_us: u32,
     stepped: bool,
     pub(super) log: VecDeque<Happened>,
@@ -115,6 +116,7 @@ impl<'a> Campaign<'a> {
             cable: FaultInjector::new(plan.faults, plan.seed),
             judge: Judge::new(limits, plan.settings.axes),
             id: 0,
+            session: None,
             tick_us: tick_us(&plan.settings),
             stepped,
             log: VecDeque::new(),
@@ -152,6 +154,7 @@ impl<'a> Campaign<'a> {
         mut progress: impl FnMut(&RunStatus<'_>),
     ) -> Result<Outcome, BenchError> {
         self.id = board.first_id();
+        self.session = board.session();
         loop {
             let batch = self.batch(traffic);
             if batch.events.is_empty() {
@@ -256,7 +259,7 @@ impl<'a> Campaign<'a> {
         self.id = self.id.wrapping_add(1);
         let mut packet = [0; PACKET_BYTES];
         // A request without a chunk is short.
-        let used = encode(&Request { id: self.id, ask }, &mut packet).unwrap_or(0);
+        let used = encode_request(&Request { id: self.id, ask }, self.session, &mut packet).unwrap_or(0);
         batch.events.push(Event::Request(packet[..used].to_vec()));
         batch.replies.push((self.id, command, expected));
     }

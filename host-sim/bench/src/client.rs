@@ -7,11 +7,13 @@
 use std::time::{Duration, Instant};
 
 use truepath_core::checksum::crc32;
+use truepath_core::image::Role;
 use truepath_core::link::{
-    Ask, CHUNK_BYTES, Denial, DeviceKeys, DeviceSettings, DeviceStatus, Item, LinkError, LogEntry, PACKET_BYTES, Reply,
-    Request, Response, Slot, decode, encode,
+    AccessError, Ask, CHUNK_BYTES, Denial, DeviceKeys, DeviceSession, DeviceSettings, DeviceStatus, Item, LinkError,
+    LogEntry, PACKET_BYTES, Reply, Request, Response, SessionEnd, Slot, decode, encode_request,
 };
 
+use super::access::Access;
 use super::error::BenchError;
 use super::wire::Wire;
 
@@ -29,6 +31,7 @@ pub struct Client<W> {
     answer: Vec<u8>,
     /// Requests that had to be sent again.
     retries: u64,
+    access: Option<Access>,
 }
 
 /// An item that arrived and was checked.
@@ -49,12 +52,27 @@ impl<W: Wire> Client<W> {
     /// A client on a wire. Its ids begin at `first_id`, best at random, so that those of an earlier client are not
     /// taken for its own.
     pub fn new(wire: W, first_id: u16) -> Self {
-        Self { wire, id: first_id, patience: PATIENCE, attempts: ATTEMPTS, pending: vec![], answer: vec![], retries: 0 }
+        Self {
+            wire,
+            id: first_id,
+            patience: PATIENCE,
+            attempts: ATTEMPTS,
+            pending: vec![],
+            answer: vec![],
+            retries: 0,
+            access: None,
+        }
     }
     /// The same with another time for an answer and another number of attempts.
     #[must_use]
     pub fn with_patience(mut self, patience: Duration, attempts: u32) -> Self {
         (self.patience, self.attempts) = (patience, attempts);
+        self
+    }
+    /// The same with a key to log in with where the device asks for it.
+    #[must_use]
+    pub fn with_access(mut self, access: Option<Access>) -> Self {
+        self.access = access;
         self
     }
     /// Requests that had to be sent again.
@@ -72,19 +90,71 @@ impl<W: Wire> Client<W> {
     /// `Silent` without an answer after all attempts, `Denied` as the device says, `Foreign` for an answer that cannot
     /// be read.
     pub fn ask(&mut self, ask: Ask<'_>) -> Result<Reply<'_>, BenchError> {
+        self.exchange(ask)?;
+        // A session that is forgotten, and then a login.
+        for _ in 0..2 {
+            let Some(access) = self.access.clone() else { break };
+            match self.denied() {
+                Some(AccessError::Role { needed }) => self.log_in(&access, needed)?,
+                Some(AccessError::Ended { why: SessionEnd::Unknown | SessionEnd::Silence }) => access.set_session(None),
+                _ => break,
+            }
+            self.exchange(ask)?;
+        }
+        let response: Response<'_> = decode(&mut self.answer).map_err(|e| BenchError::Foreign(e.to_string()))?;
+        response.answer.map_err(BenchError::Denied)
+    }
+
+    /// Why the last answer lets nobody in, if it is that.
+    fn denied(&self) -> Option<AccessError> {
+        match decode::<Response<'_>>(&mut self.answer.clone()).ok()?.answer {
+            Err(Denial::Access(error)) => Some(error),
+            _ => None,
+        }
+    }
+
+    fn log_in(&mut self, access: &Access, role: Role) -> Result<(), BenchError> {
+        let answer = |client: &mut Self, ask: Ask<'_>| {
+            client.exchange(ask)?;
+            let response: Response<'_> = decode(&mut client.answer).map_err(|e| BenchError::Foreign(e.to_string()))?;
+            match response.answer.map_err(BenchError::Denied)? {
+                Reply::Challenge { device, nonce, .. } => Ok((device, nonce, 0)),
+                Reply::LoggedIn { session } => Ok(([0; 12], [0; 32], session)),
+                other => Err(foreign(&other)),
+            }
+        };
+        access.set_session(None);
+        let (device, nonce, _) = answer(self, Ask::Challenge)?;
+        let (.., session) = answer(self, access.login(role, &device, &nonce))?;
+        access.set_session(Some(session));
+        self.tell_time()
+    }
+    /// Ends the session, if there is one.
+    pub fn log_out(&mut self) {
+        let Some(access) = self.access.take().filter(|access| access.session().is_some()) else { return };
+        let session = access.session();
+        access.set_session(None);
+        // It ends by itself if the device does not answer any more.
+        let _ = self.exchange_in(Ask::Logout, session);
+    }
+
+    fn exchange(&mut self, ask: Ask<'_>) -> Result<(), BenchError> {
+        self.exchange_in(ask, self.access.as_ref().and_then(Access::session))
+    }
+    /// Sends a request of a session and keeps its answer.
+    fn exchange_in(&mut self, ask: Ask<'_>, session: Option<u64>) -> Result<(), BenchError> {
         self.id = self.id.wrapping_add(1);
         let id = self.id;
         let mut packet = [0; PACKET_BYTES + 1];
         // A leading delimiter clears what noise left in the receiver.
-        let used = encode(&Request { id, ask }, &mut packet[1..]).map_err(|e| BenchError::Foreign(e.to_string()))?;
+        let used = encode_request(&Request { id, ask }, session, &mut packet[1..]);
+        let used = used.map_err(|e| BenchError::Foreign(e.to_string()))?;
         let lost = |e: std::io::Error| BenchError::Silent(e.to_string());
         for attempt in 0..self.attempts {
             self.retries += u64::from(attempt > 0);
             self.wire.send(&packet[..=used]).map_err(lost)?;
             if self.answered(id).map_err(lost)? {
-                let response: Response<'_> =
-                    decode(&mut self.answer).map_err(|e| BenchError::Foreign(e.to_string()))?;
-                return response.answer.map_err(BenchError::Denied);
+                return Ok(());
             }
         }
         Err(BenchError::Silent(format!("no answer to {} in {} attempts", name(&ask), self.attempts)))
@@ -154,15 +224,13 @@ impl<W: Wire> Client<W> {
             other => Err(foreign(&other)),
         }
     }
-    /// Tells a device that keeps a log the time, seconds since 1970.
+    /// Tells a device the time, for its log, if it keeps one and takes the time from whoever asks. Logs nobody in.
     ///
     /// # Errors
-    /// As [`Client::ask`]; none of a firmware that keeps no log.
-    pub fn tell_time(&mut self, unix_s: u32) -> Result<(), BenchError> {
-        match self.done(Ask::Time { unix_s }) {
-            Err(BenchError::Denied(Denial::Unknown)) => Ok(()),
-            other => other,
-        }
+    /// As [`Client::ask`].
+    pub fn tell_time(&mut self) -> Result<(), BenchError> {
+        let since_1970 = std::time::UNIX_EPOCH.elapsed().unwrap_or_default();
+        self.exchange(Ask::Time { unix_s: u32::try_from(since_1970.as_secs()).unwrap_or(u32::MAX) })
     }
     /// The log of changes from an entry on, oldest first, and the number of the next one.
     ///
@@ -182,6 +250,17 @@ impl<W: Wire> Client<W> {
             };
             from = last.sequence + 1;
             all.extend(entries);
+        }
+    }
+    /// Who is logged in, and what the keys are good for; nothing of a firmware that knows no roles.
+    ///
+    /// # Errors
+    /// As [`Client::ask`].
+    pub fn session(&mut self) -> Result<Option<DeviceSession>, BenchError> {
+        match self.ask(Ask::Session) {
+            Ok(Reply::Session(session)) => Ok(Some(session)),
+            Err(BenchError::Denied(Denial::Unknown)) => Ok(None),
+            other => Err(foreign(&other?)),
         }
     }
     /// Both image slots.

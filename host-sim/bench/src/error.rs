@@ -62,6 +62,9 @@ impl BenchError {
 
 impl From<BenchError> for InputError {
     fn from(error: BenchError) -> Self {
+        if let BenchError::Denied(Denial::Access(inner)) = &error {
+            return Self::of_core(inner.code(), error.to_string(), "", inner.help());
+        }
         let (row, help) = match &error {
             BenchError::Open { .. } => (H001, H001.remedy),
             BenchError::Missing { remedy, .. } => (H002, remedy.as_str()),

@@ -79,7 +79,14 @@ impl InProcess {
             probe: lasting(0, PROBE_BYTES),
             meter: Box::leak(Box::new(ProgressMeter::new())),
         };
-        let board = Board { name: "host", last_reset: ResetCause::PowerOn, class: DeviceClass::Bench, present };
+        let board = Board {
+            name: "host",
+            last_reset: ResetCause::PowerOn,
+            class: DeviceClass::Bench,
+            present,
+            id: [0; 12],
+            secret: None,
+        };
         let device = Device::start(Nor::erased(bytes, words), memory, board, 0);
         Ok(Self { device: Some(device), now_us: 0, output: vec![0; OUTPUT_BYTES], workspace: workspace() })
     }

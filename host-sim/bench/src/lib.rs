@@ -14,6 +14,7 @@
 //!
 //! Frames and messages are those of `truepath_core::link`; nothing here knows their bytes.
 
+mod access;
 pub mod attack;
 mod board;
 mod bulk;
@@ -39,6 +40,7 @@ mod uart;
 mod watch;
 mod wire;
 
+pub use access::Access;
 pub use board::{Board, Event, Exchange};
 pub use bulk::{BATCH_BYTES, Bulk, BulkBoard};
 pub use campaign::{Campaign, Outcome, Plan};

@@ -7,6 +7,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use super::access::Access;
 use super::board::{Board, Event, Exchange, IDS};
 use super::client::Client;
 use super::emulator::Emulator;
@@ -28,6 +29,7 @@ pub struct UartBoard {
     /// Whether events keep to their time.
     paced: bool,
     first_id: u16,
+    access: Option<Access>,
     watch: Option<Arc<Watch>>,
 }
 
@@ -43,7 +45,17 @@ impl UartBoard {
         // Not the ids of the client before: its last answer is still remembered over there.
         let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
         let first_id = now.as_millis() as u16;
-        Self { _behind: behind, name, setpoints, configuration, window: window.max(1), paced, first_id, watch: None }
+        Self {
+            _behind: behind,
+            name,
+            setpoints,
+            configuration,
+            window: window.max(1),
+            paced,
+            first_id,
+            access: None,
+            watch: None,
+        }
     }
 }
 
@@ -118,7 +130,15 @@ impl Board for UartBoard {
     }
     fn client(&mut self) -> Client<&mut dyn Wire> {
         let first = self.first_id();
-        Client::new(&mut self.configuration, first)
+        let access = self.access.clone();
+        let wire: &mut dyn Wire = &mut self.configuration;
+        Client::new(wire, first).with_access(access)
+    }
+    fn use_access(&mut self, access: Option<Access>) {
+        self.access = access;
+    }
+    fn session(&self) -> Option<u64> {
+        self.access.as_ref().and_then(Access::session)
     }
     fn first_id(&mut self) -> u16 {
         self.first_id = self.first_id.wrapping_add(IDS);

@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use ed25519_dalek::{Signer as _, SigningKey};
-use truepath_core::image::{DeviceClass, DeviceClasses, KeyId, PublicKey, sign, signed_bytes};
+use truepath_core::image::{DeviceClass, DeviceClasses, KeyId, PublicKey, Role, sign, signed_bytes};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
 #[cfg(unix)]
@@ -69,6 +69,15 @@ pub fn class(text: &str) -> Result<DeviceClass, String> {
     DeviceClass::ALL.into_iter().find(|class| class.name() == text).ok_or_else(|| format!("one of {}", names()))
 }
 
+/// A role by its name.
+///
+/// # Errors
+/// The names there are.
+pub fn role(text: &str) -> Result<Role, String> {
+    let names = || Role::ALL.map(Role::name).join(", ");
+    Role::ALL.into_iter().find(|role| role.name() == text).ok_or_else(|| format!("one of {}", names()))
+}
+
 /// The number of a key from its digits.
 ///
 /// # Errors
@@ -111,21 +120,18 @@ impl Signer {
     pub fn public(&self) -> PublicKey {
         PublicKey(self.key.verifying_key().to_bytes())
     }
+    /// The signature of a message.
+    pub fn sign(&self, message: &[u8]) -> [u8; 64] {
+        self.key.sign(message).to_bytes()
+    }
     /// An image with its signature; one that is signed already gets this one in place of the other.
     ///
     /// # Errors
     /// The bytes are no image, which those who write one have seen to.
     pub fn signed(&self, image: &[u8]) -> Result<Vec<u8>, Failure> {
         let mut bytes = vec![0; signed_bytes(image)];
-        sign(
-            image,
-            &self.public(),
-            self.classes,
-            self.counter,
-            |message| self.key.sign(message).to_bytes(),
-            &mut bytes,
-        )
-        .map_err(|error| Failure::Internal(error.to_string()))?;
+        sign(image, &self.public(), self.classes, self.counter, |message| self.sign(message), &mut bytes)
+            .map_err(|error| Failure::Internal(error.to_string()))?;
         Ok(bytes)
     }
 }

@@ -121,7 +121,8 @@ fn refused_key(error: KeyRingError, key: &PublicKey, path: &Path) -> InputError 
         KeyRingError::Key(error) => {
             InputError::of_core(error.code(), error.to_string(), "", error.help()).in_file(path)
         }
-        KeyRingError::Full => {
+        // The keys of a file have all rights.
+        KeyRingError::Full | KeyRingError::OtherRights { .. } => {
             let found = format!("key {} is one too many", key.id());
             let expected = format!("at most {} keys, as many as a device trusts", truepath_core::image::MOST_KEYS);
             C001.error(found, expected).in_file(path)

@@ -126,13 +126,15 @@ fn a_device_with_a_key_takes_what_is_signed_with_it_and_says_what_to_do_about_an
         assert_eq!(code, 0, "{arguments:?}: {said}");
         said
     };
-    let refused = |image: &str| {
-        let (code, said) = device_with_errors(folder.path(), &["--json", "upload", image]);
-        assert_eq!(code, 1, "{image}");
+    let key = file("shop.key");
+    let told = |arguments: &[&str]| {
+        let (code, said) = device_with_errors(folder.path(), &[&["--json"], arguments].concat());
+        assert_eq!(code, 1, "{arguments:?}");
         let error: serde_json::Value = serde_json::from_str(&said).unwrap_or_else(|e| panic!("{e}: {said}"));
-        error["error"]["message"].as_str().unwrap().to_owned() + error["error"]["help"].as_str().unwrap()
+        ["code", "message", "help"].map(|part| error["error"][part].as_str().unwrap().to_owned()).concat()
     };
-    for name in ["shop.key", "stranger.key"] {
+    let refused = |image: &str| told(&["--key", &key, "upload", image]);
+    for name in ["shop.key", "stranger.key", "operator.key"] {
         call(&["key", "new", &file(name)]);
     }
     let plain = part(0).join("correction.tpi").display().to_string();
@@ -146,14 +148,29 @@ fn a_device_with_a_key_takes_what_is_signed_with_it_and_says_what_to_do_about_an
     assert!(!ask(&["provision", &file("shop.key.pub")]).contains("OPEN"));
     assert!(ask(&["info"]).contains("no image"), "what came while it was open is in use no more");
 
+    // Roles: nobody without a key, an operator, a stranger.
+    ask(&["provision", &file("operator.key.pub"), "--role", "operate", "--no-images"]);
+    let said = ask(&["keys"]);
+    assert!(said.contains(": engineer, signs images\n") && said.contains(": operate\n"), "{said}");
+    let (anybody, operator, stranger) = (
+        told(&["upload", &plain]),
+        told(&["--key", &file("operator.key"), "settings", "axes=4"]),
+        told(&["--key", &file("stranger.key"), "deactivate"]),
+    );
+    assert!(anybody.starts_with("K110") && anybody.contains("engineer") && anybody.contains("--key"), "{anybody}");
+    assert!(operator.starts_with("K112") && operator.contains("operate at most"), "{operator}");
+    assert!(stranger.starts_with("K111"), "{stranger}");
+    assert!(ask(&["settings"]).contains("axes = 3"), "reading needs no role");
+    ask(&["--key", &file("operator.key"), "counters", "--clear"]);
+
     let unsigned = refused(&plain);
     assert!(unsigned.contains("not signed") && unsigned.contains("--sign"), "{unsigned}");
     let (other, board) = (refused(&file("other.tpi")), refused(&file("board.tpi")));
     assert!(other.contains("key") && board.contains("board"), "{other} {board}");
-    ask(&["upload", &file("good.tpi"), "--activate"]);
+    ask(&["--key", &key, "upload", &file("good.tpi"), "--activate"]);
     assert!(ask(&["list"]).contains("ACTIVE"));
     // The image in use is verified anew behind a reset.
-    ask(&["restart"]);
+    ask(&["--key", &key, "restart"]);
     assert!(ask(&["list"]).contains("ACTIVE"));
 
     // One that was signed earlier, and the way back to it.
@@ -165,17 +182,22 @@ fn a_device_with_a_key_takes_what_is_signed_with_it_and_says_what_to_do_about_an
     let older = refused(&file("older.tpi"));
     assert!(older.contains("1000") && older.contains("sign this one again"), "{older}");
     sign(&file("older.tpi"), &[], "again.tpi");
-    ask(&["upload", &file("again.tpi"), "--activate"]);
+    ask(&["--key", &key, "upload", &file("again.tpi"), "--activate"]);
+    let log = ask(&["log"]);
+    assert!(log.contains("activated, signed by") && log.contains("logged in to engineer"), "{log}");
+    assert!(log.contains("logged in to operate") && log.contains("failed logins") && log.contains("Z  "), "{log}");
 
     // A key that got out.
     let keys: serde_json::Value = serde_json::from_str(&ask(&["--json", "keys"])).unwrap();
-    let key = keys["keys"][0].as_str().unwrap().to_owned();
+    let [id, operator] = [0, 1].map(|at| keys["keys"][at].as_str().unwrap().to_owned());
+    ask(&["revoke", &operator]);
     assert_eq!(device(folder.path(), &["revoke", "0123456789abcdef"]).0, 1, "not one that is there");
-    assert_eq!(device(folder.path(), &["revoke", &key[1..]]).0, 1);
-    let said = ask(&["revoke", &key]);
-    assert!(said.contains("CLOSED") && said.contains(&format!("revoked for ever: {key}")), "{said}");
+    assert_eq!(device(folder.path(), &["revoke", &id[1..]]).0, 1);
+    let said = ask(&["revoke", &id]);
+    assert!(said.contains("CLOSED") && said.contains(&format!("{id}")), "{said}");
     assert!(ask(&["info"]).contains("no image") && ask(&["info"]).contains("CLOSED"));
-    assert!(refused(&file("again.tpi")).contains("revoked") && refused(&plain).contains("not signed"));
+    let closed = told(&["--key", &file("shop.key"), "upload", &plain]);
+    assert!(closed.starts_with("K111") && closed.contains("revoked"), "{closed}");
 }
 
 /// So many setpoints to the device behind the socket, each a millisecond after the one before.

@@ -63,6 +63,7 @@ mod fine;
 mod header;
 mod node;
 mod read;
+mod rights;
 mod signature;
 
 pub use block::{Counted, DeviceClass, DeviceClasses, KeyId, SIGNATURE_BYTES, Signed};
@@ -79,6 +80,7 @@ pub use header::{
     SIGNED_FORMAT,
 };
 pub use node::{ImageNode, NODE_BYTES, Node};
+pub use rights::{Rights, Role};
 pub use signature::{
     KeyRing, KeyRingError, MOST_KEYS, MOST_KEYS_EVER, PublicKey, SignatureError, sign, signed_bytes, verify,
 };

@@ -16,7 +16,7 @@ use truepath_units::errors;
 
 use super::block::{BLOCK, RAW_BYTES, SIGNATURE_BYTES};
 use super::header::{COUNTER, CRC_BYTES};
-use super::{DeviceClass, DeviceClasses, Image, ImageError, KeyId, SIGNED_FORMAT, Signed, crc32};
+use super::{DeviceClass, DeviceClasses, Image, ImageError, KeyId, Rights, SIGNED_FORMAT, Signed, crc32};
 
 /// Most keys a device trusts at a time.
 pub const MOST_KEYS: usize = 4;
@@ -70,6 +70,12 @@ errors! {
             key: KeyId,
         } = "I021", "key {key} was revoked here, and signs nothing any more"
             => "sign with another key that is provisioned, and find out what else this one has signed";
+        /// The key is good for logging in, not for images.
+        SignsNothing {
+            /// Its number.
+            key: KeyId,
+        } = "I022", "key {key} was provisioned without the right to sign images"
+            => "sign with another key that is provisioned";
     }
 }
 
@@ -91,6 +97,13 @@ impl PublicKey {
     pub fn check(&self) -> Result<(), SignatureError> {
         self.verifying().map(|_| ())
     }
+    /// Whether it signed a message.
+    ///
+    /// Not inlined: as [`verify`].
+    #[inline(never)]
+    pub fn signed(&self, message: &[u8], signature: &[u8; RAW_BYTES]) -> bool {
+        self.verifying().is_ok_and(|key| key.verify_strict(message, &Signature::from_bytes(signature)).is_ok())
+    }
     /// Not inlined: as [`verify`], it is known by its name where the rest of a program is proved to have no panic.
     #[inline(never)]
     fn verifying(&self) -> Result<VerifyingKey, SignatureError> {
@@ -109,7 +122,10 @@ pub fn verify<'a>(image: &'a [u8], keys: &KeyRing, class: DeviceClass) -> Result
     let Signed { message, signature, key, classes, .. } = signed;
     let unknown =
         if keys.is_revoked(key) { SignatureError::Revoked { key } } else { SignatureError::UnknownKey { key } };
-    let trusted = keys.iter().find(|trusted| trusted.id() == key).ok_or(unknown)?;
+    let (trusted, rights) = keys.find(key).ok_or(unknown)?;
+    if !rights.signs {
+        return Err(SignatureError::SignsNothing { key });
+    }
     let forged = |_| SignatureError::Forged { key };
     trusted.verifying()?.verify_strict(message, &Signature::from_bytes(signature)).map_err(forged)?;
     // Behind the signature, so that what is said of the classes is what the signer said.
@@ -121,6 +137,9 @@ pub fn verify<'a>(image: &'a [u8], keys: &KeyRing, class: DeviceClass) -> Result
 pub struct KeyRing {
     trusted: [Option<PublicKey>; MOST_KEYS],
     revoked: [Option<KeyId>; MOST_KEYS_EVER],
+    /// Of the trusted ones. A message of before there were rights has none.
+    #[serde(skip)]
+    rights: [Rights; MOST_KEYS],
 }
 
 /// Why a key was not added.
@@ -128,6 +147,11 @@ pub struct KeyRing {
 pub enum KeyRingError {
     /// It cannot be used.
     Key(SignatureError),
+    /// It is there, with other rights.
+    OtherRights {
+        /// Its number.
+        key: KeyId,
+    },
     /// There are [`MOST_KEYS`], or with the revoked ones [`MOST_KEYS_EVER`].
     Full,
 }
@@ -136,6 +160,20 @@ impl KeyRing {
     /// The keys that are trusted.
     pub fn iter(&self) -> impl Iterator<Item = &PublicKey> {
         self.trusted.iter().flatten()
+    }
+    /// The rights of the keys, in the order of [`KeyRing::iter`]; behind the last of them those of no key.
+    pub fn rights(&self) -> [Rights; MOST_KEYS] {
+        let mut all = [Rights::default(); MOST_KEYS];
+        let there = self.trusted.iter().zip(self.rights).filter(|(key, _)| key.is_some());
+        for (place, (_, rights)) in all.iter_mut().zip(there) {
+            *place = rights;
+        }
+        all
+    }
+    /// A trusted key and its rights.
+    pub fn find(&self, key: KeyId) -> Option<(&PublicKey, Rights)> {
+        let mut all = self.trusted.iter().zip(self.rights);
+        all.find_map(|(there, rights)| there.as_ref().filter(|there| there.id() == key).map(|there| (there, rights)))
     }
     /// The numbers of those that were revoked.
     pub fn revoked(&self) -> impl Iterator<Item = KeyId> {
@@ -149,23 +187,36 @@ impl KeyRing {
     pub fn is_revoked(&self, key: KeyId) -> bool {
         self.revoked().any(|revoked| revoked == key)
     }
+    /// Adds a key with all rights; one that is there already changes nothing.
+    ///
+    /// # Errors
+    /// As [`KeyRing::add_with`].
+    pub fn add(&mut self, key: PublicKey) -> Result<(), KeyRingError> {
+        self.add_with(key, Rights::default())
+    }
     /// Adds a key; one that is there already changes nothing.
     ///
     /// # Errors
-    /// It cannot be used, was revoked, or there is no room. A key with the number of another one counts as unusable.
-    pub fn add(&mut self, key: PublicKey) -> Result<(), KeyRingError> {
+    /// It cannot be used, was revoked, is there with other rights, or there is no room. A key with the number of another one
+    /// counts as unusable.
+    pub fn add_with(&mut self, key: PublicKey, rights: Rights) -> Result<(), KeyRingError> {
         key.check().map_err(KeyRingError::Key)?;
         let id = key.id();
         if self.is_revoked(id) {
             return Err(KeyRingError::Key(SignatureError::Revoked { key: id }));
         }
-        if let Some(there) = self.iter().find(|there| there.id() == id) {
-            let other = SignatureError::Key { key: id };
-            return if *there == key { Ok(()) } else { Err(KeyRingError::Key(other)) };
+        if let Some((there, its)) = self.find(id) {
+            return match (*there == key, its == rights) {
+                (true, true) => Ok(()),
+                (true, false) => Err(KeyRingError::OtherRights { key: id }),
+                (false, _) => Err(KeyRingError::Key(SignatureError::Key { key: id })),
+            };
         }
         let known = self.iter().count().saturating_add(self.revoked().count());
-        let place = self.trusted.iter_mut().find(|place| place.is_none() && known < MOST_KEYS_EVER);
-        *place.ok_or(KeyRingError::Full)? = Some(key);
+        let mut places = self.trusted.iter_mut().zip(&mut self.rights);
+        let place = places.find(|(place, _)| place.is_none() && known < MOST_KEYS_EVER);
+        let (place, its) = place.ok_or(KeyRingError::Full)?;
+        (*place, *its) = (Some(key), rights);
         Ok(())
     }
     /// Trusts a key no more, for ever, also one that was never trusted. There always is room for one that is.
@@ -177,8 +228,11 @@ impl KeyRing {
             return Ok(());
         }
         *self.revoked.iter_mut().find(|place| place.is_none()).ok_or(KeyRingError::Full)? = Some(key);
-        for place in &mut self.trusted {
+        for (place, rights) in self.trusted.iter_mut().zip(&mut self.rights) {
             *place = place.filter(|trusted| trusted.id() != key);
+            if place.is_none() {
+                *rights = Rights::default();
+            }
         }
         Ok(())
     }

@@ -4,6 +4,7 @@ use core::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use super::access::AccessError;
 use super::device::Item;
 use super::settings::DeviceSettingsError;
 use crate::image::{ImageError, MOST_KEYS, MOST_KEYS_EVER, SignatureError};
@@ -93,6 +94,8 @@ pub enum Denial {
     NotPresent,
     /// There is no room for another key.
     KeysFull,
+    /// Whoever asks may not, or is not let in.
+    Access(AccessError),
 }
 
 impl fmt::Display for Denial {
@@ -123,6 +126,7 @@ impl fmt::Display for Denial {
             Self::NotConfigured => f.write_str("the device has no settings of its own: it is to be configured first"),
             Self::Untrusted(error) => error.fmt(f),
             Self::NotPresent => f.write_str("nobody is at the device: its button was not held at the last reset"),
+            Self::Access(error) => error.fmt(f),
             Self::KeysFull => {
                 write!(
                     f,

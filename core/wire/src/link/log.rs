@@ -4,7 +4,7 @@ use core::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::image::KeyId;
+use crate::image::{KeyId, Role};
 
 /// Most entries in one [`Reply::Log`](super::Reply::Log).
 pub const LOG_ENTRIES: usize = 8;
@@ -24,10 +24,13 @@ pub struct LogEntry {
     pub by: Option<KeyId>,
     /// What was done.
     pub change: Change,
-    /// Number of the key it is about: of the signer of an image, or the one that was provisioned or revoked.
+    /// Number of the key it is about: of the signer of an image, the one that was provisioned or revoked, the one whose session a
+    /// login has ended, the one that a failed login named.
     pub key: Option<KeyId>,
     /// What [`Change`] says of it, or 0.
     pub value: u32,
+    /// Logins that failed since the entry before; 65,535 and above: 65,535.
+    pub refused: u16,
     /// Counter of a signed image, below which none of its pass is taken any more; else 0.
     pub counter: u32,
 }
@@ -57,11 +60,17 @@ pub enum Change {
     RecordingReleased,
     /// A reset was asked for; the value is 1 if by the watchdog.
     Restarted,
+    /// Somebody logged in; the value is the number of the role.
+    LoggedIn,
+    /// Somebody logged out.
+    LoggedOut,
+    /// A login failed: the first one since the entry before. Those behind it are counted in `refused` of the next entry.
+    LoginRefused,
 }
 
 impl Change {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 14] = [
         Self::Activated,
         Self::Deactivated,
         Self::Configured,
@@ -73,6 +82,9 @@ impl Change {
         Self::CountersCleared,
         Self::RecordingReleased,
         Self::Restarted,
+        Self::LoggedIn,
+        Self::LoggedOut,
+        Self::LoginRefused,
     ];
     /// Its number.
     pub const fn number(self) -> u8 {
@@ -99,9 +111,16 @@ impl fmt::Display for LogEntry {
             Change::CountersCleared => f.write_str("counters set to zero")?,
             Change::RecordingReleased => f.write_str("recorder released")?,
             Change::Restarted => f.write_str(if value == 0 { "restarted" } else { "restarted by the watchdog" })?,
+            Change::LoggedIn => {
+                let role = Role::ALL.get(value as usize).copied().unwrap_or_default();
+                write!(f, "logged in to {role}")?;
+            }
+            Change::LoggedOut => f.write_str("logged out")?,
+            Change::LoginRefused => f.write_str("login refused, key")?,
         }
         match (self.change, self.key) {
             (Change::Activated, Some(key)) => write!(f, ", signed by {key}, counter {}", self.counter),
+            (Change::LoggedIn, Some(key)) => write!(f, ", which ended the session of {key}"),
             (_, Some(key)) => write!(f, " {key}"),
             (_, None) => Ok(()),
         }

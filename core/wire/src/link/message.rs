@@ -6,12 +6,13 @@
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
+use super::access::{DEVICE_ID_BYTES, DeviceSession, NONCE_BYTES};
 use super::denial::Denial;
 use super::device::{DeviceKeys, DeviceStatus, Hello, Item, Progress, Slot};
 use super::log::{LOG_ENTRIES, LogEntry};
 use super::settings::DeviceSettings;
 use super::trace::{TRACE_SAMPLES, TraceSample};
-use crate::image::{KeyId, PublicKey};
+use crate::image::{KeyId, PublicKey, Rights, Role};
 use crate::rewrite::ArmRequest;
 
 /// Most bytes of a message with its CRC-32, before COBS.
@@ -125,6 +126,67 @@ pub enum Ask<'a> {
         /// Seconds since 1970.
         unix_s: u32,
     },
+    /// What is to be signed to log in.
+    Challenge,
+    /// Answers the challenge; whoever was logged in is not any more.
+    Login {
+        /// Number of the key.
+        key: KeyId,
+        /// The role that is wanted.
+        role: Role,
+        /// Ed25519 signature of [`login_message`](super::login_message), in two halves.
+        signature: [[u8; 32]; 2],
+    },
+    /// Ends the session.
+    Logout,
+    /// Who is logged in, and what the keys are good for.
+    Session,
+    /// As `Provision`, with these rights.
+    ProvisionAs {
+        /// The key.
+        key: PublicKey,
+        /// What it is good for.
+        rights: Rights,
+    },
+}
+
+impl Ask<'_> {
+    /// The least role that may ask it. `Provision` and `Revoke` need somebody at the device instead, who needs no key.
+    pub const fn least(&self) -> Role {
+        match self {
+            Self::Hello
+            | Self::Status
+            | Self::Check(_)
+            | Self::List
+            | Self::Settings
+            | Self::Trace
+            | Self::Recording { .. }
+            | Self::Progress
+            | Self::Keys
+            | Self::Provision(_)
+            | Self::ProvisionAs { .. }
+            | Self::Revoke(_)
+            | Self::Log { .. }
+            | Self::Challenge
+            | Self::Login { .. }
+            | Self::Logout
+            | Self::Session => Role::Read,
+            Self::AcknowledgeDrivesDisabled
+            | Self::Arm(_)
+            | Self::Disarm
+            | Self::ClearCounters
+            | Self::ReleaseRecording
+            | Self::Restart { .. }
+            | Self::Time { .. } => Role::Operate,
+            Self::Begin { .. }
+            | Self::Chunk { .. }
+            | Self::Commit
+            | Self::Activate { .. }
+            | Self::Deactivate
+            | Self::Configure(_)
+            | Self::Compute => Role::Engineer,
+        }
+    }
 }
 
 /// The replies.
@@ -180,4 +242,20 @@ pub enum Reply<'a> {
         /// Oldest first; empty behind the newest one that is in the flash.
         entries: Vec<LogEntry, LOG_ENTRIES>,
     },
+    /// To `Challenge`.
+    Challenge {
+        /// Number of the device, zeros where it has none.
+        device: [u8; DEVICE_ID_BYTES],
+        /// Never twice the same on this device.
+        nonce: [u8; NONCE_BYTES],
+        /// Whether nobody can know it before: it comes from a random number generator.
+        random: bool,
+    },
+    /// To `Login`.
+    LoggedIn {
+        /// Number of the session, to stand behind each request.
+        session: u64,
+    },
+    /// To `Session`.
+    Session(DeviceSession),
 }

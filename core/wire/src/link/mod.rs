@@ -21,6 +21,7 @@
 //! assert!(matches!(SetpointFrame::decode(&raw[..bytes], 3), Err(LinkError::Checksum { .. })));
 //! ```
 
+mod access;
 mod answer;
 mod counters;
 mod denial;
@@ -37,6 +38,10 @@ mod stream;
 mod stuffing;
 mod trace;
 
+pub use access::{
+    AccessError, DEVICE_ID_BYTES, DeviceSession, LOGIN_BYTES, MOST_TRIES, NONCE_BYTES, SESSION_SILENCE_US, SessionEnd,
+    TRY_WINDOW_US, login_message,
+};
 pub use answer::{AnswerFrame, FORWARD, MAX_ANSWER_BYTES, answer_bytes};
 pub use counters::Counters;
 pub use denial::Denial;
@@ -47,7 +52,7 @@ pub use endpoint::{BEHIND, Endpoint, RESTART_AFTER, Verdict};
 pub use error::LinkError;
 pub use log::{Change, LOG_ENTRIES, LogEntry};
 pub use message::{Ask, CHUNK_BYTES, MESSAGE_BYTES, PACKET_BYTES, Reply, Request, Response};
-pub use packet::{decode, encode};
+pub use packet::{decode, decode_request, encode, encode_request};
 pub use recorder::Recorder;
 pub use setpoint::{MAX_SETPOINT_BYTES, SetpointFrame, setpoint_bytes};
 pub use settings::{DeviceSetting, DeviceSettings, DeviceSettingsError};

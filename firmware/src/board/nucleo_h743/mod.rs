@@ -27,6 +27,7 @@ mod flash;
 mod interrupts;
 mod memory;
 mod outputs;
+mod random;
 mod setpoint_spi;
 mod setpoint_uart;
 mod start;

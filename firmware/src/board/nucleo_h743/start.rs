@@ -5,6 +5,7 @@ use embassy_stm32::gpio::{Input, Level, Output, Pull, Speed};
 use embassy_stm32::pac::gpio::vals::Ospeedr;
 use embassy_stm32::pac::{GPIOA, RCC};
 use embassy_stm32::spi::{self, SlaveSelectPolarity, Spi};
+use embassy_stm32::uid::uid;
 use embassy_stm32::usart::{self, BufferedUart, Uart};
 use static_cell::StaticCell;
 use truepath_core::image::DeviceClass;
@@ -15,7 +16,7 @@ use super::interrupts::{self, Lines, SETPOINT_LINK};
 use super::setpoint_spi::setpoint_spi;
 use super::setpoint_uart::{self, setpoint_uart};
 use super::tasks::{CONFIG_BAUD, SETPOINT_TICK, background, config_task, tick};
-use super::{clocks, memory, outputs, watchdog};
+use super::{clocks, memory, outputs, random, watchdog};
 use crate::board::config_link::{Configuration, SharedConfiguration};
 use crate::board::shared_servo::share;
 use crate::config_service::{Board, ConfigService};
@@ -53,7 +54,14 @@ fn set_up() -> &'static SharedConfiguration<Bank2> {
     // The blue button is high while it is held (UM2407, push-buttons).
     let button = Input::new(p.PC13, Pull::Down);
     cortex_m::asm::delay(48_000);
-    let board = Board { name: NAME, last_reset, class: DeviceClass::Board, present: button.is_high() };
+    let board = Board {
+        name: NAME,
+        last_reset,
+        class: DeviceClass::Board,
+        present: button.is_high(),
+        id: uid(),
+        secret: random::draw(),
+    };
     let (service, servo) = ConfigService::start(Bank2::new(p.FLASH), memory::lend(), board, 0);
     // SAFETY: the first side goes to the setpoint task, the second below it; above it run only interrupts that leave the
     // servo alone.

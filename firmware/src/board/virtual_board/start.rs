@@ -45,7 +45,8 @@ fn set_up() -> &'static SharedConfiguration<Nor<'static>> {
     interrupts::set_up(&mut core.NVIC);
 
     // The clock of the device begins here, at 0, in batches as well.
-    let board = Board { name: NAME, last_reset, class: DeviceClass::Bench, present: presence() };
+    let board =
+        Board { name: NAME, last_reset, class: DeviceClass::Bench, present: presence(), id: [0; 12], secret: None };
     let (service, servo) = ConfigService::start(memory::bank(last_reset), memory::lend(), board, 0);
     // SAFETY: the first side goes to the setpoint task, the second below it; above it run only interrupts that leave the
     // servo alone.

@@ -7,10 +7,12 @@ pub mod part;
 
 use ed25519_dalek::{Signer, SigningKey};
 use part::{CLEAR, GATE, MM, PASS, SPINDLE};
-use truepath_core::image::{DeviceClass, DeviceClasses, Image, PublicKey, build, image_bytes, sign, signed_bytes};
+use truepath_core::image::{
+    DeviceClass, DeviceClasses, Image, PublicKey, Role, build, image_bytes, sign, signed_bytes,
+};
 use truepath_core::link::{
-    AnswerFrame, Ask, CHUNK_BYTES, Denial, DeviceSettings, DeviceStatus, Item, PACKET_BYTES, Reply, Request,
-    ResetCause, Response, SetpointFrame, Slot, decode, encode, unstuff,
+    AccessError, AnswerFrame, Ask, CHUNK_BYTES, Denial, DeviceSettings, DeviceStatus, Item, PACKET_BYTES, Reply,
+    Request, ResetCause, Response, SetpointFrame, Slot, decode, encode, encode_request, login_message, unstuff,
 };
 use truepath_core::rewrite::{ArmRequest, Flags, Frame, Mode, Output, Setpoint};
 use truepath_fw::computation::ProgressMeter;
@@ -69,6 +71,10 @@ pub struct Rig {
     pub setpoint: Setpoint,
     pub restart: Option<Restart>,
     packet: Vec<u8>,
+    /// Number of its session.
+    pub session: Option<u64>,
+    /// Whether it logs in where it has to, with the key of an [`owner`].
+    pub logs_in: bool,
 }
 
 impl Rig {
@@ -97,7 +103,14 @@ impl Rig {
             probe: lent(0, 4_096),
             meter: Box::leak(Box::new(ProgressMeter::new())),
         };
-        let board = Board { name: "test", last_reset: ResetCause::PowerOn, class: DeviceClass::Bench, present: true };
+        let board = Board {
+            name: "test",
+            last_reset: ResetCause::PowerOn,
+            class: DeviceClass::Bench,
+            present: true,
+            id: [3; 12],
+            secret: None,
+        };
         let device = Device::start(Nor::erased(bank, words), memory, board, 0);
         let setpoint = Setpoint {
             axes: [0, 0, CLEAR, 0, 0, 0],
@@ -105,7 +118,16 @@ impl Rig {
             frame_crc: Frame::identity().crc,
             ..Setpoint::default()
         };
-        Self { device: Some(device), now_us: 0, id: 0, setpoint, restart: None, packet: vec![] }
+        Self {
+            device: Some(device),
+            now_us: 0,
+            id: 0,
+            setpoint,
+            restart: None,
+            packet: vec![],
+            session: None,
+            logs_in: true,
+        }
     }
     /// With an image in slot 0, in use.
     pub fn with_image(image: &[u8]) -> Self {
@@ -123,13 +145,52 @@ impl Rig {
 
     /// A request, with the next id.
     pub fn ask(&mut self, ask: Ask<'_>) -> Result<Reply<'_>, Denial> {
+        self.exchange(ask);
+        let denial = decode::<Response<'_>>(&mut self.packet.clone()).unwrap().answer.err();
+        let again = match denial {
+            Some(Denial::Access(AccessError::Role { needed })) if self.logs_in => self.log_in_to(needed),
+            Some(Denial::Access(AccessError::Ended { .. })) if self.logs_in => {
+                self.session = None;
+                return self.ask(ask);
+            }
+            _ => false,
+        };
+        match denial {
+            Some(denial) if !again => return Err(denial),
+            Some(_) => self.exchange(ask),
+            None => {}
+        }
+        decode::<Response<'_>>(&mut self.packet).unwrap().answer
+    }
+    /// Sends a request of its session and keeps the one answer.
+    fn exchange(&mut self, ask: Ask<'_>) {
         self.id = self.id.wrapping_add(1);
-        let answers = self.raw(&request(self.id, ask));
+        let mut packet = [0; PACKET_BYTES];
+        let used = encode_request(&Request { id: self.id, ask }, self.session, &mut packet).unwrap();
+        let answers = self.raw(&packet[..used]);
         assert_eq!(answers.len(), 1, "one answer to {ask:?}");
         self.packet = answers.into_iter().next().unwrap();
-        let response: Response<'_> = decode(&mut self.packet).unwrap();
-        assert_eq!(response.id, self.id);
-        response.answer
+        assert_eq!(decode::<Response<'_>>(&mut self.packet.clone()).unwrap().id, self.id);
+    }
+    /// Logs in with the key of an owner that the device trusts, if there is one.
+    fn log_in_to(&mut self, role: Role) -> bool {
+        let Reply::Keys(keys) = self.ask(Ask::Keys).unwrap() else { panic!() };
+        let trusted = (1..=9).map(owner).find(|owner| keys.keys.find(public(owner).id()).is_some());
+        trusted.is_some_and(|owner| self.log_in(&owner, role).is_ok())
+    }
+    /// The challenge: number of the device and nonce.
+    pub fn challenge(&mut self) -> ([u8; 12], [u8; 32]) {
+        let Reply::Challenge { device, nonce, .. } = self.ask(Ask::Challenge).unwrap() else { panic!() };
+        (device, nonce)
+    }
+    /// Logs in with a key; its session is that of the requests from then on.
+    pub fn log_in(&mut self, owner: &SigningKey, role: Role) -> Result<u64, Denial> {
+        self.session = None;
+        let (device, nonce) = self.challenge();
+        let ask = login(owner, role, &device, &nonce);
+        let Reply::LoggedIn { session } = self.ask(ask)? else { panic!() };
+        self.session = Some(session);
+        Ok(session)
     }
     /// Bytes on the configuration link; gives the packets that come back, without their delimiters.
     pub fn raw(&mut self, bytes: &[u8]) -> Vec<Vec<u8>> {
@@ -288,6 +349,7 @@ impl Rig {
     /// The power fails and comes back, or something else resets the device; the flash stays.
     pub fn reset(&mut self, cause: ResetCause) {
         let now_us = self.now_us;
+        self.session = None;
         let (mut flash, memory, board) = self.device.take().unwrap().into_parts();
         flash.power_up();
         self.device = Some(Device::start(flash, memory, Board { last_reset: cause, ..board }, now_us));
@@ -309,6 +371,14 @@ impl Rig {
     pub fn has_power(&mut self) -> bool {
         self.flash().is_powered()
     }
+}
+
+/// The right answer to a challenge.
+pub fn login(owner: &SigningKey, role: Role, device: &[u8; 12], nonce: &[u8; 32]) -> Ask<'static> {
+    let key = public(owner).id();
+    let signature = owner.sign(&login_message(device, nonce, key, role)).to_bytes();
+    let (halves, _) = signature.as_chunks::<32>();
+    Ask::Login { key, role, signature: [halves[0], halves[1]] }
 }
 
 /// A request as it travels.

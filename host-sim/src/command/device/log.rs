@@ -28,6 +28,8 @@ struct Entry {
     host_time: Option<String>,
     /// Number of the key of who asked.
     by: Option<String>,
+    /// Logins that failed since the entry before.
+    refused: u16,
     what: String,
 }
 
@@ -41,11 +43,13 @@ impl Log {
     /// A line for each entry.
     pub fn words(&self) -> String {
         let mut text = String::new();
-        for Entry { number, boots, uptime_us, host_time, by, what } in &self.entries {
+        for Entry { number, boots, uptime_us, host_time, by, refused, what } in &self.entries {
             let seconds = *uptime_us as f64 / 1e6;
-            let (time, by) = (host_time.as_deref().unwrap_or("-"), by.as_deref().unwrap_or("open"));
+            let (time, by) = (host_time.as_deref().unwrap_or("-"), by.as_deref().unwrap_or("-"));
+            let wrong = if *refused > 0 { format!(", after {refused} failed logins") } else { String::new() };
             // Writing to a String cannot fail.
-            let _ = writeln!(text, "{number:>5}  boot {boots:>4} +{seconds:>12.3} s  {time:<20}  {by:<16}  {what}");
+            let _ =
+                writeln!(text, "{number:>5}  boot {boots:>4} +{seconds:>12.3} s  {time:<20}  {by:<16}  {what}{wrong}");
         }
         if self.missing > 0 {
             let _ =
@@ -64,6 +68,7 @@ impl Entry {
             uptime_us: entry.uptime_us,
             host_time: entry.host_s.and_then(utc),
             by: entry.by.map(|key| key.to_string()),
+            refused: entry.refused,
             what: entry.to_string(),
         }
     }
@@ -86,15 +91,16 @@ mod tests {
             change: Change::Activated,
             key: Some(KeyId([7; 8])),
             value: 0x89ab_cdef,
+            refused: 0,
             counter: 12,
         };
-        let second = LogEntry { sequence: 9, host_s: None, change: Change::Disarmed, key: None, ..first };
+        let second = LogEntry { sequence: 9, host_s: None, change: Change::Disarmed, key: None, refused: 2, ..first };
         let log = Log::of(&[first, second], 0, 11);
         assert_eq!(
             log.words(),
-            "    7  boot    3 +      61.250 s  2023-11-14T22:13:20Z  open              image 89abcdef activated, \
+            "    7  boot    3 +      61.250 s  2023-11-14T22:13:20Z  -                 image 89abcdef activated, \
              signed by 0707070707070707, counter 12\n    \
-             9  boot    3 +      61.250 s  -                     open              disarmed\n\
+             9  boot    3 +      61.250 s  -                     -                 disarmed, after 2 failed logins\n\
              8 entries are not there: overwritten, or never written to the flash\n"
         );
         assert_eq!(Log::of(&[second], 9, 10).missing, 0);

@@ -11,18 +11,20 @@ use std::time::Duration;
 use arm::ArmOptions;
 use clap::{Args, Subcommand};
 use truepath_bench::{BenchError, Client, Ingredients, Line, compute};
-use truepath_core::image::KeyId;
+use truepath_core::image::{KeyId, Rights, Role};
 use truepath_core::link::{Ask, Counters, DeviceStatus, Slot};
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::write_file;
 use truepath_job::job::JobFile;
 use truepath_job::levels;
 use truepath_job::pass::Pass;
-use truepath_job::signing::{key_id, read_public};
+use truepath_job::signing::{key_id, read_public, role};
 
 use super::hil::Counts;
 use super::image;
-use crate::coprocessor::{Trust, activate, info, recording, recording_setpoints, recording_table, trust, upload};
+use crate::coprocessor::{
+    Trust, access, activate, info, recording, recording_setpoints, recording_table, trust, upload,
+};
 use crate::monitor::{Known, Looked, device as view, wanted};
 use crate::settings::{NoSuchSetting, changed, named, paced};
 use crate::terminal::Terminal;
@@ -36,6 +38,9 @@ pub struct Options {
     /// Bits per second of a serial port.
     #[arg(long, value_name = "BAUD", global = true, default_value_t = 921_600)]
     baud: u32,
+    /// Log in with this private key (truepath key new) where the device asks for a role; no higher one than it asks for.
+    #[arg(long = "key", value_name = "FILE", global = true)]
+    access: Option<PathBuf>,
     #[command(subcommand)]
     task: Task,
 }
@@ -126,6 +131,12 @@ enum Task {
     Provision {
         /// A file of public keys.
         file: PathBuf,
+        /// The highest role that may be logged in to with them.
+        #[arg(long, value_name = "ROLE", value_parser = role, default_value = "engineer")]
+        role: Role,
+        /// Take no images that they sign.
+        #[arg(long)]
+        no_images: bool,
     },
     /// Lets the device trust a key no more, for ever; its button must have been held at its last reset.
     Revoke {
@@ -164,17 +175,36 @@ impl Task {
 
 /// Asks, and prints the answer.
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
+    let access = options.access.as_deref().map(access).transpose()?;
     let mut client = connect(options.port.as_deref(), options.baud)?;
     if options.task.changes() {
-        client.tell_time(unix_s())?;
+        client.tell_time()?;
     }
-    match &options.task {
+    let mut client = client.with_access(access);
+    if let Task::Monitor { plain, image, seconds, every_ms } = &options.task {
+        let (end, every) = (seconds.map(Duration::from_secs), Duration::from_millis(*every_ms));
+        let known = image.as_deref().map(known).transpose()?;
+        if !wanted(*plain, terminal) {
+            return lines::run(&mut client, end, every, terminal);
+        }
+        let (port, baud) = (options.port.clone().unwrap_or_default(), options.baud);
+        let name = port.clone();
+        let looked = Looked { port, reopen: move || connect(Some(&name), baud), every, end, known };
+        return view(client, looked);
+    }
+    let done = carry_out(&options.task, &mut client, terminal);
+    client.log_out();
+    done
+}
+
+fn carry_out(task: &Task, client: &mut Client<Line>, terminal: &Terminal) -> Result<(), Failure> {
+    match task {
         Task::List => {
             let slots = client.slots()?;
             terminal.tell(&slots, || slots_words(&slots))
         }
         Task::Info => {
-            let info = info(&mut client)?;
+            let info = info(client)?;
             let status = client.status()?;
             let both = serde_json::json!({ "device": info, "status": status });
             terminal.tell(&both, || {
@@ -199,23 +229,23 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
             let bytes = image::read(path)?;
             image::check(&bytes, path)?;
             let mut bar = terminal.progress("uploading", bytes.len() as u64);
-            let done = upload(&mut client, &bytes, *activate, |there| bar.reached(there))?;
+            let done = upload(client, &bytes, *activate, |there| bar.reached(there))?;
             drop(bar);
             let both = serde_json::json!({ "slot": done.slot, "crc": format!("{:08x}", done.crc), "active": activate });
             let word = if *activate { "active" } else { "not active yet: truepath device activate" };
             terminal.tell(&both, || format!("image {:08x} in slot {}, {word}\n", done.crc, done.slot))
         }
         Task::Activate { slot } => {
-            let crc = activate(&mut client, *slot)?;
+            let crc = activate(client, *slot)?;
             let both = serde_json::json!({ "slot": slot, "crc": format!("{crc:08x}") });
             terminal.tell(&both, || format!("image {crc:08x} of slot {slot} is active\n"))
         }
-        Task::Deactivate => done(&mut client, Ask::Deactivate, terminal, "no image is active"),
+        Task::Deactivate => done(client, Ask::Deactivate, terminal, "no image is active"),
         Task::Acknowledge => {
-            done(&mut client, Ask::AcknowledgeDrivesDisabled, terminal, "drives acknowledged as disabled: bypass")
+            done(client, Ask::AcknowledgeDrivesDisabled, terminal, "drives acknowledged as disabled: bypass")
         }
         Task::Arm(arm) => {
-            let request = arm.request(&mut client)?;
+            let request = arm.request(client)?;
             let (ask, word) =
                 if arm.check { (Ask::Check(request), "could be armed") } else { (Ask::Arm(request), "armed") };
             client.done(ask)?;
@@ -224,22 +254,13 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
                 "armed": !arm.check, "part": part, "frame_crc": frame, "binding": request.binding });
             terminal.tell(&both, || format!("{word}: part {part}, frame {frame:08x}\n"))
         }
-        Task::Disarm => done(&mut client, Ask::Disarm, terminal, "disarmed"),
-        Task::Monitor { plain, image, seconds, every_ms } => {
-            let (end, every) = (seconds.map(Duration::from_secs), Duration::from_millis(*every_ms));
-            let known = image.as_deref().map(known).transpose()?;
-            if !wanted(*plain, terminal) {
-                return lines::run(&mut client, end, every, terminal);
-            }
-            let (port, baud) = (options.port.clone().unwrap_or_default(), options.baud);
-            let name = port.clone();
-            let looked = Looked { port, reopen: move || connect(Some(&name), baud), every, end, known };
-            view(client, looked)
-        }
+        Task::Disarm => done(client, Ask::Disarm, terminal, "disarmed"),
+        // It keeps the client, see `main`.
+        Task::Monitor { .. } => Ok(()),
         Task::Record { output, setpoints, release, force } => {
             let axes = client.settings()?.axes;
             let mut bar = terminal.progress("downloading", 1000);
-            let frames = recording(&mut client, axes, |n, all| bar.reached(1000 * n / all.max(1)))?;
+            let frames = recording(client, axes, |n, all| bar.reached(1000 * n / all.max(1)))?;
             drop(bar);
             let text = if *setpoints {
                 recording_setpoints(&frames, client.settings()?.rewriter.tick_hz)
@@ -280,22 +301,25 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
             terminal.tell(&shown, || shown.words())
         }
         Task::Keys => {
-            let trust = trust(&mut client)?;
+            let trust = trust(client)?;
             terminal.tell(&trust, || trust.words())
         }
-        Task::Provision { file } => {
+        Task::Provision { file, role, no_images } => {
+            let rights = Rights { role: *role, signs: !no_images };
+            let whole = rights == Rights::default();
             for key in read_public(file)? {
-                client.done(Ask::Provision(key))?;
+                // What an older firmware knows as well.
+                client.done(if whole { Ask::Provision(key) } else { Ask::ProvisionAs { key, rights } })?;
             }
-            let trust = trust(&mut client)?;
+            let trust = trust(client)?;
             terminal.tell(&trust, || trust.words())
         }
         Task::Revoke { key } => {
             client.done(Ask::Revoke(*key))?;
-            let trust = trust(&mut client)?;
+            let trust = trust(client)?;
             terminal.tell(&trust, || trust.words())
         }
-        Task::Restart { watchdog } => done(&mut client, Ask::Restart { watchdog: *watchdog }, terminal, "restarted"),
+        Task::Restart { watchdog } => done(client, Ask::Restart { watchdog: *watchdog }, terminal, "restarted"),
         Task::Compute { job, probe, activate: after, minutes } => {
             let probe = Source::read(probe)?;
             let pass = Pass::read(JobFile::read(job)?)?.of_file(&probe)?;
@@ -303,12 +327,12 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
             let ingredients = Ingredients { program: pass.program.bytes(), job: &compact, probe: probe.bytes() };
             let mut bar = terminal.progress("computing on the device", truepath_core::link::Stage::Ended as u64 * 1000);
             let patience = Duration::from_secs(60 * minutes);
-            let (made, time) = compute(&mut client, &ingredients, patience, |now| {
+            let (made, time) = compute(client, &ingredients, patience, |now| {
                 bar.reached(now.stage as u64 * 1000 + u64::from(now.permille));
             })?;
             drop(bar);
             if *after {
-                activate(&mut client, made.slot)?;
+                activate(client, made.slot)?;
             }
             let seconds = time.as_secs_f64();
             let both = serde_json::json!({
@@ -335,15 +359,8 @@ fn connect(port: Option<&str>, baud: u32) -> Result<Client<Line>, BenchError> {
     };
     let line = Line::open(name, baud).map_err(|e| BenchError::open(name, &e))?;
     // Not the id of the request before this one, which the device remembers.
-    Ok(Client::new(line, since_1970().as_millis() as u16))
-}
-
-fn since_1970() -> Duration {
-    std::time::UNIX_EPOCH.elapsed().unwrap_or_default()
-}
-
-fn unix_s() -> u32 {
-    u32::try_from(since_1970().as_secs()).unwrap_or(u32::MAX)
+    let now = std::time::UNIX_EPOCH.elapsed().unwrap_or_default();
+    Ok(Client::new(line, now.as_millis() as u16))
 }
 
 /// A request without an answer of its own.

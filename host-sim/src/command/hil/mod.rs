@@ -25,6 +25,7 @@ pub use report::{Counts, Report};
 pub use run::{Options, SILENCE_US, STREAM_HZ, Source, recorded, run, run_watched, settings};
 
 use super::image;
+use crate::coprocessor::access;
 use crate::terminal::Terminal;
 
 /// What is run, as it is asked for.
@@ -110,6 +111,9 @@ struct PlaceArguments {
     /// Bits per second of --config-port, where it is a serial one.
     #[arg(long, value_name = "BAUD", default_value_t = 921_600)]
     config_baud: u32,
+    /// Log in with this private key where the device asks for a role.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["attack", "trust", "bring_up"])]
+    key: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -152,6 +156,7 @@ pub(crate) fn main(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fai
     // Setpoints at a rate of their own keep to it; the others go out as fast as the answers come.
     let paced = arguments.rate.is_some() || arguments.setpoints.is_some();
     let mut board = open(&kind(arguments)?, arguments.window, paced)?;
+    board.use_access(arguments.place.key.as_deref().map(access).transpose()?);
     let mut onlooker = Onlooker::new(arguments.plain, terminal, board.describe(), options.count);
     let made = match (&arguments.job, &arguments.probe) {
         (Some(job), Some(probe)) => {

@@ -5,11 +5,14 @@
 use std::time::Duration;
 
 use serde::Serialize;
-use truepath_bench::{BenchError, Board, Client, Wire, restart};
+use truepath_bench::{Access, BenchError, Board, Client, Wire, restart};
 use truepath_core::checksum::crc32;
-use truepath_core::image::{DeviceClass, DeviceClasses, ImageError, KeyId, SIGNATURE_BYTES, SignatureError};
+use truepath_core::image::{
+    DeviceClass, DeviceClasses, ImageError, KeyId, Rights, Role, SIGNATURE_BYTES, SignatureError,
+};
 use truepath_core::link::{
-    Ask, CHUNK_BYTES, Denial, Item, PACKET_BYTES, Reply, Request, Response, Slot, decode, encode,
+    AccessError, Ask, CHUNK_BYTES, Denial, Item, MOST_TRIES, PACKET_BYTES, Reply, Request, Response, SessionEnd, Slot,
+    decode, encode_request,
 };
 use truepath_ground::diagnostics::Failure;
 use truepath_job::signing::Signer;
@@ -43,8 +46,8 @@ impl TrustReport {
     }
 }
 
-/// Key of the shop, of a second one, and of a stranger.
-const SEEDS: [[u8; 32]; 3] = [[0x51; 32], [0x52; 32], [0x53; 32]];
+/// Key of the shop, of a second one, of a stranger, and of an operator.
+const SEEDS: [[u8; 32]; 4] = [[0x51; 32], [0x52; 32], [0x53; 32], [0x54; 32]];
 /// Time for the answer to a replayed packet.
 const PATIENCE: Duration = Duration::from_secs(10);
 /// Where the number of the key lies, from the end.
@@ -55,7 +58,7 @@ const KEY_FROM_END: usize = SIGNATURE_BYTES - 8 + 4;
 /// # Errors
 /// The device took something, refused something, or refused it for another reason than it has to; the board has a key.
 pub fn run(board: &mut dyn Board, image: &[u8]) -> Result<TrustReport, Failure> {
-    let [shop, second, stranger] = SEEDS.map(|seed| Signer::of_seed(&seed));
+    let [shop, second, stranger, operator] = SEEDS.map(|seed| Signer::of_seed(&seed));
     let signed = |by: &Signer, counter, classes| {
         let mut by = by.clone();
         (by.counter, by.classes) = (counter, classes);
@@ -76,6 +79,8 @@ pub fn run(board: &mut dyn Board, image: &[u8]) -> Result<TrustReport, Failure> 
     tried.upload("not signed, no key: open", image, Ok(()))?;
     tried.ask("first key", Ask::Provision(shop.public()), Ok(()))?;
     tried.in_use("in use while it was open", None)?;
+    tried.roles(&shop, &operator, &stranger)?;
+    tried.board.use_access(Some(access(&shop)));
     tried.upload("not signed", image, untrusted(SignatureError::Missing))?;
     let unknown = SignatureError::UnknownKey { key: stranger.public().id() };
     tried.upload("signed by a stranger", &by_stranger, untrusted(unknown))?;
@@ -90,7 +95,8 @@ pub fn run(board: &mut dyn Board, image: &[u8]) -> Result<TrustReport, Failure> 
     tried.cut_short("committed before its end", &new)?;
 
     // The packets of an upload, as somebody at the cable could record them.
-    let packets = packets(&old, first_id)?;
+    let session = tried.board.session();
+    let packets = packets(&old, first_id, session)?;
     tried.replay("an upload and its activation", &packets, None)?;
     tried.in_use("the image of that upload", Some(&old))?;
     tried.upload("signed later", &new, Ok(()))?;
@@ -107,17 +113,34 @@ pub fn run(board: &mut dyn Board, image: &[u8]) -> Result<TrustReport, Failure> 
 
     tried.ask("second key", Ask::Provision(second.public()), Ok(()))?;
     tried.ask("first key revoked", Ask::Revoke(key), Ok(()))?;
+    tried.board.use_access(None);
     tried.in_use("signed with the revoked key", None)?;
     let revoked = untrusted(SignatureError::Revoked { key });
+    tried.log_in("login with the revoked key", &shop, Role::Read, unknown_key(&shop))?;
+    tried.board.use_access(Some(access(&second)));
     tried.upload("signed with the revoked key", &signed(&shop, 400, all)?, revoked)?;
     tried.ask("the revoked key once more", Ask::Provision(shop.public()), revoked)?;
     tried.upload("signed with the second key", &signed(&second, 400, all)?, Ok(()))?;
     tried.ask("second key revoked", Ask::Revoke(second.public().id()), Ok(()))?;
-    tried.upload("not signed, all keys revoked", image, untrusted(SignatureError::Missing))?;
-    restart(tried.board)?;
-    tried.upload("the same behind a reset", image, untrusted(SignatureError::Missing))?;
+    tried.board.use_access(None);
+    tried.upload("not signed, all keys revoked", image, needs(Role::Engineer))?;
+    tried.log_in("login with a key, all keys revoked", &second, Role::Read, unknown_key(&second))?;
     tried.in_use("at the end", None)?;
     Ok(TrustReport { board: tried.board.describe(), attempts: tried.attempts })
+}
+
+/// Access with somebody's key.
+fn access(by: &Signer) -> Access {
+    let signer = by.clone();
+    Access::new(&by.public(), move |message| signer.sign(message))
+}
+
+const fn needs(needed: Role) -> Result<(), Denial> {
+    Err(Denial::Access(AccessError::Role { needed }))
+}
+
+fn unknown_key(by: &Signer) -> Result<(), Denial> {
+    Err(Denial::Access(AccessError::UnknownKey { key: by.public().id() }))
 }
 
 const fn untrusted(error: SignatureError) -> Result<(), Denial> {
@@ -131,6 +154,115 @@ struct Tried<'b> {
 }
 
 impl Tried<'_> {
+    /// Logins that have to be refused, and what a role is not enough for.
+    fn roles(&mut self, shop: &Signer, operator: &Signer, stranger: &Signer) -> Result<(), BenchError> {
+        let key = shop.public().id();
+        let forged = || Err(Denial::Access(AccessError::Forged { key }));
+        let only_operates = Rights { role: Role::Operate, signs: false };
+        self.ask("key of an operator", Ask::ProvisionAs { key: operator.public(), rights: only_operates }, Ok(()))?;
+        let settings = self.board.client().settings()?;
+        self.ask("settings without a login", Ask::Configure(settings), needs(Role::Engineer))?;
+        self.ask("disarming without a login", Ask::Disarm, needs(Role::Operate))?;
+
+        self.log_in("login by a stranger", stranger, Role::Operate, unknown_key(stranger))?;
+        let (device, nonce) = self.challenge()?;
+        let Ask::Login { signature, .. } = access(stranger).login(Role::Engineer, &device, &nonce) else {
+            return Ok(());
+        };
+        let ask = Ask::Login { key, role: Role::Engineer, signature };
+        self.answer("login by a stranger in the name of the key", ask, forged())?;
+        let (device, nonce) = self.challenge()?;
+        let Ask::Login { signature, .. } = access(shop).login(Role::Operate, &device, &nonce) else { return Ok(()) };
+        let ask = Ask::Login { key, role: Role::Engineer, signature };
+        self.answer("answer for another role", ask, forged())?;
+        let (mut device, nonce) = self.challenge()?;
+        device[0] ^= 1;
+        let ask = access(shop).login(Role::Engineer, &device, &nonce);
+        self.answer("answer for another device", ask, forged())?;
+
+        let (device, nonce) = self.challenge()?;
+        let right = access(shop).login(Role::Engineer, &device, &nonce);
+        let session = self.answer("login", right, Ok(()))?;
+        let none = Err(Denial::Access(AccessError::NoChallenge));
+        self.answer("the same answer again", right, none)?;
+        self.challenge()?;
+        self.answer("the same answer to a new challenge", right, forged())?;
+        let beyond = AccessError::Beyond { key: operator.public().id(), most: Role::Operate };
+        self.ask_in(session, "settings by who is logged in", Ask::Configure(settings), Ok(()))?;
+        self.ask("settings by a second client", Ask::Configure(settings), needs(Role::Engineer))?;
+        // What has failed so far is forgotten with a reset, for which an operator's session is enough.
+        self.ask_in(session, "a reset by who is logged in", Ask::Restart { watchdog: false }, Ok(()))?;
+        self.awake()?;
+        let reset = Err(Denial::Access(AccessError::Ended { why: SessionEnd::Unknown }));
+        self.ask_in(session, "the session, behind the reset", Ask::Disarm, reset)?;
+        self.log_in("an operator as an engineer", operator, Role::Engineer, Err(Denial::Access(beyond)))?;
+        let first = self.log_in("an operator", operator, Role::Operate, Ok(()))?;
+        self.ask_in(first, "settings by an operator", Ask::Configure(settings), needs(Role::Engineer))?;
+        let second = self.log_in("a second client logs in", shop, Role::Engineer, Ok(()))?;
+        let taken = Err(Denial::Access(AccessError::Ended { why: SessionEnd::NewLogin }));
+        self.ask_in(first, "the first one asks on", Ask::Disarm, taken)?;
+
+        // One has failed behind the reset already.
+        for _ in 1..MOST_TRIES {
+            self.log_in("login by a stranger, again and again", stranger, Role::Read, unknown_key(stranger))?;
+        }
+        let (device, nonce) = self.challenge()?;
+        let done = self.board.client().ask(access(shop).login(Role::Read, &device, &nonce)).map(|_| ());
+        let Err(BenchError::Denied(Denial::Access(AccessError::TooManyTries { wait_s }))) = done else {
+            return Err(BenchError::Differs(format!("too many logins: {done:?}")));
+        };
+        let many = AccessError::TooManyTries { wait_s };
+        self.keep("the right one behind them", done, Err(Denial::Access(many)))?;
+        self.ask_in(second, "a reset by the second client", Ask::Restart { watchdog: false }, Ok(()))?;
+        self.awake()
+    }
+    /// Waits until the device answers behind a reset.
+    fn awake(&mut self) -> Result<(), BenchError> {
+        if !self.board.is_stepped() {
+            std::thread::sleep(RESET);
+        }
+        self.board.client().status().map(|_| ())
+    }
+    fn challenge(&mut self) -> Result<([u8; 12], [u8; 32]), BenchError> {
+        match self.board.client().ask(Ask::Challenge)? {
+            Reply::Challenge { device, nonce, .. } => Ok((device, nonce)),
+            other => Err(BenchError::Foreign(format!("{other:?}"))),
+        }
+    }
+    /// Gives an answer to a challenge; the number of the session, 0 without one.
+    fn answer(&mut self, given: &'static str, ask: Ask<'_>, expected: Result<(), Denial>) -> Result<u64, BenchError> {
+        let mut session = 0;
+        let done = self.board.client().ask(ask).map(|reply| {
+            if let Reply::LoggedIn { session: number } = reply {
+                session = number;
+            }
+        });
+        self.keep(given, done, expected).map(|()| session)
+    }
+    /// The right answer to a challenge, by somebody.
+    fn log_in(
+        &mut self,
+        given: &'static str,
+        by: &Signer,
+        role: Role,
+        expected: Result<(), Denial>,
+    ) -> Result<u64, BenchError> {
+        let (device, nonce) = self.challenge()?;
+        self.answer(given, access(by).login(role, &device, &nonce), expected)
+    }
+    /// A request of a session.
+    fn ask_in(
+        &mut self,
+        session: u64,
+        given: &'static str,
+        ask: Ask<'_>,
+        expected: Result<(), Denial>,
+    ) -> Result<(), BenchError> {
+        let id = self.board.first_id();
+        let packet = packet(ask, id, Some(session))?;
+        let done = answered(self.board.client().wire(), &packet)?;
+        self.keep(given, done.map_err(BenchError::Denied), expected)
+    }
     /// Keeps what the device did, if it is what it has to do.
     fn keep(
         &mut self,
@@ -230,19 +362,25 @@ fn answered(wire: &mut dyn Wire, packet: &[u8]) -> Result<Result<(), Denial>, Be
     Ok(response.answer.map(|_: Reply<'_>| ()))
 }
 
+/// Time a board takes for a reset.
+const RESET: Duration = Duration::from_millis(500);
+
+fn packet(ask: Ask<'_>, id: u16, session: Option<u64>) -> Result<Vec<u8>, BenchError> {
+    let mut packet = [0; PACKET_BYTES];
+    let used = encode_request(&Request { id, ask }, session, &mut packet);
+    let used = used.map_err(|e| BenchError::Foreign(e.to_string()))?;
+    Ok(packet[..used].to_vec())
+}
+
 /// The packets of an upload of an image into the first slot, and of its activation.
-fn packets(image: &[u8], first_id: u16) -> Result<Vec<Vec<u8>>, BenchError> {
+fn packets(image: &[u8], first_id: u16, session: Option<u64>) -> Result<Vec<Vec<u8>>, BenchError> {
     let crc = name(image);
     let chunks = image.chunks(CHUNK_BYTES).enumerate();
     let chunks = chunks.map(|(k, bytes)| Ask::Chunk { offset: (k * CHUNK_BYTES) as u32, bytes });
     let begin = Ask::Begin { item: Item::Image, length: image.len() as u32, crc };
     let asks = [begin].into_iter().chain(chunks).chain([Ask::Commit, Ask::Activate { slot: 0, crc }]);
-    let packet = |(ask, id): (Ask<'_>, u16)| {
-        let mut packet = [0; PACKET_BYTES];
-        let used = encode(&Request { id, ask }, &mut packet).map_err(|e| BenchError::Foreign(e.to_string()))?;
-        Ok(packet[..used].to_vec())
-    };
-    asks.zip(std::iter::successors(Some(first_id), |id| Some(id.wrapping_add(1)))).map(packet).collect()
+    let ids = std::iter::successors(Some(first_id), |id| Some(id.wrapping_add(1)));
+    asks.zip(ids).map(|(ask, id)| packet(ask, id, session)).collect()
 }
 
 /// The name of an image, whatever its bytes are worth.
@@ -287,7 +425,7 @@ mod tests {
         let mut board = BulkBoard::new(InProcess::attended().unwrap());
         let report = run(&mut board, image).unwrap();
         let refused = report.attempts.iter().filter(|attempt| attempt.refused.is_some()).count();
-        assert_eq!((report.attempts.len(), refused), (24, 15), "{}", report.words());
+        assert_eq!((report.attempts.len(), refused), (50, 34), "{}", report.words());
         assert!(run(&mut board, image).is_err(), "it has known keys");
     }
 }

@@ -1,10 +1,11 @@
 //! One of each: every request, reply and denial, with the number that `docs/link.md` gives it. The lists cannot fall
 //! behind: a new variant does not compile before it is named here.
 
-use truepath_wire::image::{Binding, DeviceClass, ImageError, KeyId, KeyRing, PublicKey, SignatureError};
+use truepath_wire::image::{Binding, DeviceClass, ImageError, KeyId, KeyRing, PublicKey, Rights, Role, SignatureError};
 use truepath_wire::link::{
-    ActiveImage, Ask, Change, ComputeFailure, Counters, Denial, DeviceKeys, DeviceSetting, DeviceSettings,
-    DeviceSettingsError, DeviceStatus, Hello, Item, LogEntry, Progress, Reply, ResetCause, Slot, Stage, TraceSample,
+    AccessError, ActiveImage, Ask, Change, ComputeFailure, Counters, Denial, DeviceKeys, DeviceSession, DeviceSetting,
+    DeviceSettings, DeviceSettingsError, DeviceStatus, Hello, Item, LogEntry, Progress, Reply, ResetCause, Slot, Stage,
+    TraceSample,
 };
 use truepath_wire::rewrite::{ArmRequest, AxisMap, Frame, Identity, Mode, Place, Reason, Refusal, Status};
 
@@ -48,6 +49,11 @@ pub fn asks() -> Vec<(&'static str, Ask<'static>)> {
         Ask::Revoke(KeyId([7; 8])),
         Ask::Log { from: 300 },
         Ask::Time { unix_s: 1_700_000_000 },
+        Ask::Challenge,
+        Ask::Login { key: KeyId([7; 8]), role: Role::Operate, signature: [[1; 32], [2; 32]] },
+        Ask::Logout,
+        Ask::Session,
+        Ask::ProvisionAs { key: PublicKey([7; 32]), rights: Rights { role: Role::Operate, signs: false } },
     ];
     all.into_iter().map(|ask| (ask_name(&ask), ask)).collect()
 }
@@ -80,6 +86,11 @@ fn ask_name(ask: &Ask<'_>) -> &'static str {
         Ask::Revoke(_) => "Revoke",
         Ask::Log { .. } => "Log",
         Ask::Time { .. } => "Time",
+        Ask::Challenge => "Challenge",
+        Ask::Login { .. } => "Login",
+        Ask::Logout => "Logout",
+        Ask::Session => "Session",
+        Ask::ProvisionAs { .. } => "ProvisionAs",
     }
 }
 
@@ -136,6 +147,12 @@ pub fn keys() -> DeviceKeys {
     DeviceKeys { class: DeviceClass::Board, present: false, keys: KeyRing::default() }
 }
 
+pub fn session() -> DeviceSession {
+    let operator = Rights { role: Role::Operate, signs: false };
+    let rights = [Rights::default(), operator, Rights::default(), Rights::default()];
+    DeviceSession { open: false, role: Role::Operate, key: Some(KeyId([7; 8])), refused: 3, rights }
+}
+
 pub fn log_entry() -> LogEntry {
     LogEntry {
         sequence: 301,
@@ -146,6 +163,7 @@ pub fn log_entry() -> LogEntry {
         change: Change::Activated,
         key: Some(KeyId([7; 8])),
         value: 0x89ab_cdef,
+        refused: 2,
         counter: 17,
     }
 }
@@ -179,6 +197,9 @@ pub fn replies() -> Vec<(&'static str, Reply<'static>)> {
         Reply::Progress(Progress { stage: Stage::Ended, permille: 1_000, result: Some(Err(failure)) }),
         Reply::Keys(keys()),
         Reply::Log { next: 302, entries: [log_entry()].into_iter().collect() },
+        Reply::Challenge { device: [5; 12], nonce: [6; 32], random: true },
+        Reply::LoggedIn { session: 0x0123_4567_89ab_cdef },
+        Reply::Session(session()),
     ];
     all.into_iter().map(|reply| (reply_name(&reply), reply)).collect()
 }
@@ -197,6 +218,9 @@ fn reply_name(reply: &Reply<'_>) -> &'static str {
         Reply::Progress(_) => "Progress",
         Reply::Keys(_) => "Keys",
         Reply::Log { .. } => "Log",
+        Reply::Challenge { .. } => "Challenge",
+        Reply::LoggedIn { .. } => "LoggedIn",
+        Reply::Session(_) => "Session",
     }
 }
 
@@ -224,6 +248,7 @@ pub fn denials() -> Vec<(&'static str, Denial)> {
         Denial::Untrusted(SignatureError::UnknownKey { key: KeyId([1; 8]) }),
         Denial::NotPresent,
         Denial::KeysFull,
+        Denial::Access(AccessError::Role { needed: Role::Engineer }),
     ];
     all.into_iter().map(|denial| (denial_name(&denial), denial)).collect()
 }
@@ -250,5 +275,6 @@ fn denial_name(denial: &Denial) -> &'static str {
         Denial::Untrusted(_) => "Untrusted",
         Denial::NotPresent => "NotPresent",
         Denial::KeysFull => "KeysFull",
+        Denial::Access(_) => "Access",
     }
 }
