@@ -194,7 +194,7 @@ fn a_device_with_a_key_takes_what_is_signed_with_it_and_says_what_to_do_about_an
     assert_eq!(device(folder.path(), &["revoke", "0123456789abcdef"]).0, 1, "not one that is there");
     assert_eq!(device(folder.path(), &["revoke", &id[1..]]).0, 1);
     let said = ask(&["revoke", &id]);
-    assert!(said.contains("CLOSED") && said.contains(&format!("{id}")), "{said}");
+    assert!(said.contains("CLOSED") && said.contains(&id.to_string()), "{said}");
     assert!(ask(&["info"]).contains("no image") && ask(&["info"]).contains("CLOSED"));
     let closed = told(&["--key", &file("shop.key"), "upload", &plain]);
     assert!(closed.starts_with("K111") && closed.contains("revoked"), "{closed}");
