@@ -93,6 +93,7 @@ IMAGE_ERRORS = {
     19: "a key is no sound public key",
     20: "a later one of its program was in use: use that, or to go back on purpose sign this one again with truepath image sign",
     21: "it is signed with a key that was revoked",
+    22: "it is signed with a key that may log in, and not sign images: sign it with another key",
     32: "the limits of joint 0 are missing or wrong: min-limit, max-limit, max-correction-vel, max-correction-accel",
     33: "the limits of joint 1 are missing or wrong",
     34: "the limits of joint 2 are missing or wrong",
