@@ -60,7 +60,7 @@ impl BringUp {
 /// How long the clock of a board is compared with that of this computer, and what it may be off by.
 const CLOCK: Duration = Duration::from_secs(10);
 const CLOCK_SHARE: f64 = 0.002;
-/// Until a board answers behind a reset of its watchdog at the latest: it runs out within a second, and the start reads both slots.
+/// Until a board answers behind a reset of its watchdog at the latest: it runs out within two seconds, and the start reads both slots.
 const BACK: Duration = Duration::from_secs(5);
 /// Setpoints at a controller's pace, per second.
 const PACE_HZ: u32 = 1_000;
