@@ -3,25 +3,44 @@
 use std::env;
 use std::path::PathBuf;
 
-/// A board: the feature that chooses it, its images, and the scripts they are linked with.
-struct Board {
+/// Images of a board: the feature that chooses it, and the scripts they are linked with, by themselves and with a loader.
+struct Images {
     feature: &'static str,
     bins: &'static [&'static str],
     scripts: &'static [&'static str],
+    updatable: &'static [&'static str],
 }
+
+const VIRTUAL: &str = "CARGO_FEATURE_BOARD_VIRTUAL";
+const NUCLEO_H743: &str = "CARGO_FEATURE_BOARD_NUCLEO_H743";
+const UPDATABLE: &str = "CARGO_FEATURE_UPDATABLE";
 
 /// The map of the virtual board lies in the root of the workspace; the HAL of a real part adds the names of its
 /// interrupts, `device.x`.
-const BOARDS: [Board; 2] = [
-    Board {
-        feature: "CARGO_FEATURE_BOARD_VIRTUAL",
+const IMAGES: [Images; 4] = [
+    Images {
+        feature: VIRTUAL,
         bins: &["truepath-virtual", "budget"],
-        scripts: &["memory.x", "startup.x", "stack.x", "defmt.x"],
+        scripts: &["memory.x", "alone.x", "startup.x", "stack.x", "defmt.x"],
+        updatable: &["memory.x", "program.x", "startup.x", "virtual-entry.x", "stack.x", "defmt.x"],
     },
-    Board {
-        feature: "CARGO_FEATURE_BOARD_NUCLEO_H743",
+    Images {
+        feature: VIRTUAL,
+        bins: &["truepath-virtual-loader"],
+        scripts: &[],
+        updatable: &["memory.x", "loader.x", "startup.x", "stack.x", "defmt.x"],
+    },
+    Images {
+        feature: NUCLEO_H743,
         bins: &["truepath-nucleo-h743"],
-        scripts: &["nucleo-h743.x", "startup.x", "device.x", "stack.x", "defmt.x"],
+        scripts: &["nucleo-h743.x", "alone.x", "startup.x", "device.x", "stack.x", "defmt.x"],
+        updatable: &["nucleo-h743.x", "program.x", "startup.x", "device.x", "stack.x", "defmt.x"],
+    },
+    Images {
+        feature: NUCLEO_H743,
+        bins: &["truepath-nucleo-h743-loader"],
+        scripts: &[],
+        updatable: &["nucleo-h743.x", "loader.x", "startup.x", "device.x", "stack.x", "defmt.x"],
     },
 ];
 
@@ -37,9 +56,10 @@ fn main() {
     println!("cargo:rustc-link-search={}", firmware.join("..").display());
 
     println!("cargo:rustc-link-arg-bin=realtime=-Trealtime.x");
-    for Board { bins, scripts, .. } in BOARDS.into_iter().filter(|board| env::var_os(board.feature).is_some()) {
-        for bin in bins {
-            for script in scripts {
+    let is_updatable = env::var_os(UPDATABLE).is_some();
+    for images in IMAGES.into_iter().filter(|images| env::var_os(images.feature).is_some()) {
+        for bin in images.bins {
+            for script in if is_updatable { images.updatable } else { images.scripts } {
                 println!("cargo:rustc-link-arg-bin={bin}=-T{script}");
             }
             // No alignment of sections to pages, which would not fit the map.

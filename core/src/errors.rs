@@ -9,11 +9,12 @@ use crate::image::{ImageError, SignatureError};
 use crate::job::{Buffer, JobError};
 use crate::link::{AccessError, LinkError};
 use crate::probe::{ProbeErrorKind, Suspicion};
+use crate::update::UpdateError;
 
 pub use crate::units::errors::{Row, number};
 
 /// The rows of every enum of errors.
-pub const CATALOGUE: [&[Row]; 18] = [
+pub const CATALOGUE: [&[Row]; 19] = [
     GcodeErrorKind::CATALOGUE,
     ParameterError::CATALOGUE,
     CompensationError::CATALOGUE,
@@ -29,6 +30,7 @@ pub const CATALOGUE: [&[Row]; 18] = [
     ImageError::CATALOGUE,
     SignatureError::CATALOGUE,
     AccessError::CATALOGUE,
+    UpdateError::CATALOGUE,
     LinkError::CATALOGUE,
     JobError::CATALOGUE,
     Buffer::CATALOGUE,

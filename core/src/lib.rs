@@ -20,6 +20,7 @@
 //! | | [`correct`] | the cut model → correction array |
 //! | | [`process`] | several passes, the stock as a field over contour and height |
 //! | `truepath-wire` | [`image`] | correction array ↔ bytes |
+//! | | [`update`] | the signed head of a firmware update |
 //! | | [`rewrite`] | setpoint → corrected setpoint, the only code in the servo cycle |
 //! | | [`link`] | frames and messages of both links, and what becomes of a frame |
 //! | `truepath-core` | [`job`] | job, program and measurement → image: what the command line and the device both run |
@@ -80,4 +81,4 @@ pub mod job;
 pub use truepath_model::{correct, cut, identify, probe, process};
 pub use truepath_rs274 as gcode;
 pub use truepath_units::{self as units, checksum, geometry};
-pub use truepath_wire::{image, link, rewrite};
+pub use truepath_wire::{image, link, rewrite, update};

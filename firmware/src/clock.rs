@@ -4,6 +4,10 @@
 pub trait Clock {
     /// Microseconds since the reset.
     fn now_us(&self) -> u64;
+    /// A counter for short times, wrapping; [`Board::counter_hz`](crate::config_service::Board::counter_hz) is its rate.
+    fn count(&self) -> u32 {
+        self.now_us() as u32
+    }
 }
 
 /// A time that stands still: of a batch of the bench link, and of tests.

@@ -13,7 +13,7 @@
 //! use truepath_fw::computation::ProgressMeter;
 //!
 //! let (mut bank, mut words) = (vec![0; BANK_BYTES], vec![WordState::Blank; BANK_WORDS]);
-//! let flash = Nor::erased(bank.as_mut_slice().try_into()?, words.as_mut_slice().try_into()?);
+//! let flash = Nor::erased(&mut bank, &mut words);
 //! let [mut image, mut recording] = [IMAGE_BYTES, 48_000].map(|bytes| vec![0; bytes]);
 //! let [mut program, mut job, mut probe] = [65_536, 512, 65_536].map(|bytes| vec![0; bytes]);
 //! let memory = Memory {
@@ -25,7 +25,7 @@
 //!     meter: &ProgressMeter::new(),
 //! };
 //! let board = Board { name: "in process", last_reset: ResetCause::PowerOn, class: DeviceClass::Bench, present: false,
-//!     id: [0; 12], secret: None };
+//!     id: [0; 12], secret: None, counter_hz: 1_000_000 };
 //! let mut device = Device::start(flash, memory, board, 0);
 //!
 //! let mut packet = [0; PACKET_BYTES];
@@ -80,10 +80,12 @@ impl<'a, F: NorFlash> Device<'a, F> {
     pub fn config_bytes(&mut self, bytes: &[u8], now_us: u64, mut answer: impl FnMut(&[u8])) -> Option<Restart> {
         self.config.receive(bytes, now_us, &mut self.servo, &mut answer)
     }
-    /// The timer of a millisecond: notices the silence of the setpoint link, lets the log be written.
-    pub fn watch(&mut self, now_us: u64) {
+    /// The timer of a millisecond: notices the silence of the setpoint link, lets the log be written. When it gives a restart,
+    /// the device waits for [`Device::reset`].
+    pub fn watch(&mut self, now_us: u64) -> Option<Restart> {
         self.servo.watch(now_us);
         self.config.rest(&mut self.servo);
+        self.config.trial_is_over(now_us, &mut self.servo)
     }
     /// Runs a computation that was asked for, to its end; says whether there was one.
     pub fn compute(&mut self, workspace: &mut Workspace<'_>) -> bool {

@@ -10,7 +10,7 @@
 
 use truepath_core::link::{
     Counters, Deframer, DeviceSettings, Endpoint, Framed, LinkError, MAX_ANSWER_BYTES, MAX_SETPOINT_BYTES, Recorder,
-    TRACE_SAMPLES, Trace, TraceSample, setpoint_bytes,
+    STAMPS_AT_ONCE, Stamp, Stamps, TRACE_SAMPLES, Trace, TraceSample, setpoint_bytes,
 };
 use truepath_core::rewrite::{ArmRequest, Mode, Reason, Refusal, Rewriter, Spent, SpentList, State};
 
@@ -21,6 +21,8 @@ use crate::clock::Clock;
 pub const TRACE_QUEUE: usize = 64;
 /// One tick in this many is traced.
 pub const TRACE_EVERY: u32 = 8;
+/// Stamps of frames that wait to be counted; at 20 kHz for 3 ms, and they are taken out each millisecond.
+pub const STAMPS: usize = 64;
 /// Frames that are still recorded after a fault.
 pub const RECORD_AFTER: usize = 16;
 /// Longest packet of the setpoint link without its 0x00: the frame and one byte of COBS.
@@ -69,6 +71,7 @@ pub struct Servo<'a> {
     deframer: Deframer<PACKET>,
     recorder: Recorder<'a>,
     trace: Trace<TRACE_QUEUE>,
+    stamps: Stamps<STAMPS>,
 }
 
 impl<'a> Servo<'a> {
@@ -81,12 +84,14 @@ impl<'a> Servo<'a> {
             deframer: Deframer::new(),
             recorder: Recorder::new(recording, setpoint_bytes(settings.axes), RECORD_AFTER),
             trace: Trace::new(TRACE_EVERY),
+            stamps: Stamps::new(),
         }
     }
 
     /// Bytes of the stream that had arrived at `arrived_us`; `send` gets the answer to each frame that has one.
     pub fn receive(&mut self, mut bytes: &[u8], arrived_us: u64, clock: &impl Clock, send: &mut impl FnMut(&[u8])) {
-        let Self { endpoint, bare, loaded, deframer, recorder, trace } = self;
+        let called = clock.count();
+        let Self { endpoint, bare, loaded, deframer, recorder, trace, stamps } = self;
         let rewriter = loaded.as_ref().and_then(Loaded::rewriter).unwrap_or(bare);
         while let Some(framed) = deframer.feed(&mut bytes) {
             let packet = match framed {
@@ -102,7 +107,9 @@ impl<'a> Servo<'a> {
             after(endpoint, recorder, trace);
             if verdict.is_accepted() {
                 let mut answer = [0; ANSWER];
-                if let Some(bytes) = endpoint.answer_packet(clock.now_us(), &mut answer) {
+                let made = endpoint.answer_packet(clock.now_us(), &mut answer);
+                stamps.leave(verdict, arrived_us, clock.count().wrapping_sub(called));
+                if let Some(bytes) = made {
                     send(answer.get(..bytes).unwrap_or(&[]));
                 }
             }
@@ -111,12 +118,18 @@ impl<'a> Servo<'a> {
 
     /// A frame as it travels on SPI; writes the answer, as it travels there, and gives its bytes.
     pub fn frame(&mut self, raw: &[u8], arrived_us: u64, clock: &impl Clock, answer: &mut [u8]) -> Option<usize> {
-        let Self { endpoint, bare, loaded, recorder, trace, .. } = self;
+        let called = clock.count();
+        let Self { endpoint, bare, loaded, recorder, trace, stamps, .. } = self;
         let rewriter = loaded.as_ref().and_then(Loaded::rewriter).unwrap_or(bare);
         let verdict = endpoint.frame(rewriter, raw, arrived_us);
         recorder.record(raw);
         after(endpoint, recorder, trace);
-        if verdict.is_accepted() { endpoint.answer(clock.now_us(), answer) } else { None }
+        if !verdict.is_accepted() {
+            return None;
+        }
+        let made = endpoint.answer(clock.now_us(), answer);
+        stamps.leave(verdict, arrived_us, clock.count().wrapping_sub(called));
+        made
     }
 
     /// The controller did not fetch the last answer by [`Servo::answer_by_us`]: it counts as withheld. Some stores.
@@ -244,6 +257,10 @@ impl<'a> Servo<'a> {
     /// The oldest samples of the trace, at most [`TRACE_SAMPLES`]. A copy of less than 1 KiB.
     pub fn drain_trace(&mut self) -> (u32, heapless::Vec<TraceSample, TRACE_SAMPLES>) {
         self.trace.drain()
+    }
+    /// The oldest stamps of frames, at most [`STAMPS_AT_ONCE`], and how many were lost before them. A copy of 128 bytes.
+    pub fn drain_stamps(&mut self) -> (u32, heapless::Vec<Stamp, STAMPS_AT_ONCE>) {
+        self.stamps.drain()
     }
     /// Whether the recorder stands. A load.
     pub fn recording_frozen(&self) -> bool {

@@ -23,7 +23,7 @@ use crate::command::{
     pocket, probe, replay, simulate, split,
 };
 #[cfg(not(target_family = "wasm"))]
-use crate::command::{device, hil, key, manual, pack, publish, store, study};
+use crate::command::{device, firmware, hil, key, manual, pack, publish, store, study};
 use crate::help;
 use crate::streams;
 use crate::terminal::Terminal;
@@ -113,6 +113,9 @@ enum Command {
     /// A coprocessor over its configuration link.
     #[cfg(not(target_family = "wasm"))]
     Device(device::Options),
+    /// Signed updates of a coprocessor's own program.
+    #[cfg(not(target_family = "wasm"))]
+    Firmware(firmware::Options),
     /// Waviness, roughness and roundness of a bore milled by a circling cutter.
     Bore(bore::Options),
     /// Force coefficients from records of a dynamometer, or of the power of the spindle.
@@ -215,6 +218,8 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Hil(arguments) => hil::main(&arguments, terminal),
         #[cfg(not(target_family = "wasm"))]
         Command::Device(options) => device::main(&options, terminal),
+        #[cfg(not(target_family = "wasm"))]
+        Command::Firmware(options) => firmware::main(&options, terminal),
         Command::Bore(options) => bore::main(&options, terminal),
         Command::Forces(options) => forces::main(&options, terminal),
         Command::Canon(options) => canon::main(&options, terminal),

@@ -42,6 +42,8 @@ pub struct Trust {
     /// What each of them is good for: the highest role it can log in with, and whether images that it signs are taken; nothing of
     /// a firmware that knows no roles.
     pub rights: Option<Vec<Rights>>,
+    /// The numbers of those whose firmware is taken.
+    pub firmware: Vec<String>,
     /// The number of the key of who is logged in.
     pub logged_in: Option<String>,
     /// The numbers of those that were revoked.
@@ -101,11 +103,23 @@ pub fn access(path: &Path) -> Result<Access, InputError> {
 pub fn trust<W: Wire>(client: &mut Client<W>) -> Result<Trust, BenchError> {
     let keys = client.keys()?;
     let session = client.session()?;
+    // Nothing of a firmware that knows no updates.
+    let signs = match client.ask(Ask::Update) {
+        Ok(Reply::Update(status)) => status.signs.to_vec(),
+        Err(BenchError::Denied(Denial::Unknown)) => vec![],
+        other => return Err(BenchError::Foreign(format!("{:?}", other?))),
+    };
     let count = keys.keys.iter().count();
+    let signs_firmware = keys.keys.iter().zip(&signs).filter(|(_, signs)| **signs);
     Ok(Trust {
+        firmware: signs_firmware.map(|(key, _)| key.id().to_string()).collect(),
         open: keys.keys.is_open(),
         keys: keys.keys.iter().map(|key| key.id().to_string()).collect(),
-        rights: session.map(|session| session.rights.into_iter().take(count).collect()),
+        rights: session.map(|session| {
+            let signs = signs.iter().copied().chain(std::iter::repeat(false));
+            let rights = session.rights.into_iter().zip(signs);
+            rights.map(|(rights, firmware)| Rights { firmware, ..rights }).take(count).collect()
+        }),
         logged_in: session.and_then(|session| session.key).map(|key| key.to_string()),
         revoked: keys.keys.revoked().map(|key| key.to_string()).collect(),
         class: keys.class.name(),

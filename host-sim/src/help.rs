@@ -10,13 +10,13 @@ const GROUPS: [(&str, &[&str]); 7] = [
     ("Correct a part", &["init", "probe", "inspect", "correct", "learn", "plan", "split", "fillet", "batch"]),
     ("Look closer", &["simulate", "compare", "plot", "canon", "forces"]),
     ("Keep and share", &["store", "publish", "pack", "unpack", "study"]),
-    ("Coprocessor", &["image", "key", "replay", "hil", "device"]),
+    ("Coprocessor", &["image", "key", "replay", "hil", "device", "firmware"]),
     ("Without a probe, other processes", &["pocket", "bore", "multiaxis"]),
     ("This program", &["completions", "man", "help"]),
 ];
 
 /// Command lines of each command, and what they do.
-const EXAMPLES: [(&str, &[(&str, &str)]); 30] = [
+const EXAMPLES: [(&str, &[(&str, &str)]); 31] = [
     ("demo", &[("truepath demo", "three parts, reports and programs in out/demo")]),
     (
         "init",
@@ -118,6 +118,17 @@ const EXAMPLES: [(&str, &[(&str, &str)]); 30] = [
         &[
             ("truepath device --port /dev/ttyACM0 upload part.tpi --activate", "an image onto the board"),
             ("truepath device --port /dev/ttyACM0 monitor", "its state, live"),
+            (
+                "truepath device --port /dev/ttyACM0 --key shop.key update new.tpf",
+                "another firmware, tried and confirmed",
+            ),
+        ],
+    ),
+    (
+        "firmware",
+        &[
+            ("truepath firmware sign truepath.bin --board nucleo-h743zi2 --key shop.key -o new.tpf", "an update"),
+            ("truepath firmware show new.tpf --key shop.key.pub", "what it is for, and whether it is whole"),
         ],
     ),
     (

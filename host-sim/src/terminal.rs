@@ -1,6 +1,7 @@
 //! What a command says: its data on standard output; warnings, notes, progress and errors on standard error.
 
 use std::io::IsTerminal;
+use std::ops::Deref;
 
 use clap::ColorChoice;
 use serde::Serialize;
@@ -50,7 +51,7 @@ impl Terminal {
         self.say("warning", text);
     }
     /// Prints several of them.
-    pub fn warn_all(&self, texts: &[String]) {
+    pub fn warn_all(&self, texts: &[impl Deref<Target = str>]) {
         texts.iter().for_each(|text| self.warn(text));
     }
     /// Prints a remark.

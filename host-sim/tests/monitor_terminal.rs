@@ -189,6 +189,7 @@ fn a_run_on_a_terminal_shows_itself_and_leaves_its_report_on_the_screen() {
     let mut view = OnTerminal::start(&arguments, 40, 100, &[]);
     view.shows("answers compared, all identical");
     view.shows("of 60,000 setpoints");
+    view.shows("off the period of 1000.000");
     assert!(view.screen.screen().alternate_screen());
     assert_eq!(view.ends().exit_code(), 0, "{}", view.text());
     view.is_as_before();

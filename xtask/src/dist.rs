@@ -20,6 +20,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::Instant;
 
 use serde_json::{Value, json};
 
@@ -303,7 +304,9 @@ fn installed_used_removed(package: &Path, place: &Path) -> Result<(), Failure> {
         command
     };
     let name = read(program("dpkg-deb").arg("--field").arg(package).arg("Package"))?;
+    let begun = Instant::now();
     run(dpkg(&["--install"]).arg(package))?;
+    let in_place = begun.elapsed();
     let installed: Vec<_> = files_below(place)?.into_iter().filter(|f| !f.starts_with("var")).collect();
     if installed.is_empty() {
         return Err(Failure::found(format!("{} installs nothing", package.display())));
@@ -313,6 +316,13 @@ fn installed_used_removed(package: &Path, place: &Path) -> Result<(), Failure> {
         let start: &Start =
             if architecture.trim() == "arm64" { &aarch64::emulated } else { &|truepath| program(truepath) };
         let part = used(&place.join("usr"), start)?;
+        let all = begun.elapsed();
+        let file = package.file_name().unwrap_or_default().to_string_lossy();
+        println!(
+            "    {file} installed in {:.1} s, a part corrected after {:.1} s",
+            in_place.as_secs_f64(),
+            all.as_secs_f64()
+        );
         fs::remove_dir_all(part).map_err(|e| Failure::found(e.to_string()))?;
     }
     run(&mut dpkg(&["--purge", name.trim()]))?;

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use crate::repository::{cargo, program, read, root, run, succeeds, target};
 use crate::step::{Failure, Outcome, Passed};
+use crate::table::thousands;
 use crate::toolchain::need;
 
 /// A target and the files its corpus begins with: folders below the root, endings of names.
@@ -19,7 +20,7 @@ struct Target {
     longest: u32,
 }
 
-const TARGETS: [Target; 6] = [
+const TARGETS: [Target; 7] = [
     Target {
         name: "program",
         seeds: &[
@@ -44,6 +45,7 @@ const TARGETS: [Target; 6] = [
     },
     Target { name: "image", seeds: &[("fuzz/seeds/image", &["tpi"])], longest: 1_000 },
     Target { name: "servo", seeds: &[("fuzz/seeds/servo", &["bin"])], longest: 16_000 },
+    Target { name: "device", seeds: &[("fuzz/seeds/device", &["bin"])], longest: 2_000 },
 ];
 
 /// Counters for every edge and comparison.
@@ -113,7 +115,7 @@ fn fuzz(target: &Target, binaries: &Path, length: Length) -> Result<(), Failure>
     }
     let mut command = program(binaries.join(target.name));
     command.arg(format!("-max_len={}", target.longest)).arg(format!("-timeout={HANG}"));
-    command.arg(format!("-artifact_prefix={}/", artifacts.display())).args(["-print_final_stats=1", "-verbosity=0"]);
+    command.arg(format!("-artifact_prefix={}/", artifacts.display())).arg("-print_final_stats=1");
     command.arg(match length {
         Length::Runs(runs) => format!("-runs={runs}"),
         Length::Seconds(seconds) => format!("-max_total_time={seconds}"),
@@ -123,7 +125,34 @@ fn fuzz(target: &Target, binaries: &Path, length: Length) -> Result<(), Failure>
     if regressions.is_dir() {
         command.arg(&regressions);
     }
-    run(&mut command)
+    let log = place.join(format!("{}.log", target.name));
+    let problem = |e: std::io::Error| Failure::found(format!("{}: {e}", log.display()));
+    let status = command.stderr(std::fs::File::create(&log).map_err(problem)?).status();
+    let said = std::fs::read(&log).map_err(problem)?;
+    let said = String::from_utf8_lossy(&said);
+    match status {
+        Ok(status) if status.success() => println!("{:<10} {}", target.name, reached(&said)),
+        _ => return Err(Failure::found(format!("{}: {}\n{}", target.name, log.display(), end(&said)))),
+    }
+    Ok(())
+}
+
+/// What of a target's code its inputs have reached, from what libFuzzer says.
+fn reached(said: &str) -> String {
+    let number = |behind: &str| {
+        let (_, rest) = said.rsplit_once(behind)?;
+        rest.trim_start().split(|c: char| !c.is_ascii_digit()).next()?.parse::<u64>().ok()
+    };
+    let inputs = number("stat::number_of_executed_units:").unwrap_or(0);
+    let (edges, all) = (number(" cov: ").unwrap_or(0), number("INFO: Loaded 1 modules   (").unwrap_or(0));
+    let percent = (edges * 100).checked_div(all).unwrap_or(0);
+    format!("{:>12} inputs, {} of {} edges ({percent} %)", thousands(inputs), thousands(edges), thousands(all))
+}
+
+/// The last lines of what was said.
+fn end(said: &str) -> String {
+    let lines: Vec<&str> = said.lines().collect();
+    lines[lines.len().saturating_sub(60)..].join("\n")
 }
 
 /// The files a corpus begins with.
@@ -157,5 +186,14 @@ mod tests {
             assert!(!seeds(target).is_empty(), "{}", target.name);
             assert!(root().join(format!("fuzz/targets/{}.rs", target.name)).is_file(), "{}", target.name);
         }
+    }
+
+    #[test]
+    fn what_a_target_reached_is_read_from_its_last_lines() {
+        let said = "INFO: Loaded 1 modules   (41234 inline 8-bit counters): 41234 [0x1, 0x2),\n#2 INITED cov: 12 ft: 13 corp: 1/1b\n\
+                    #900\tDONE   cov: 20617 ft: 9 corp: 1/1b\nstat::number_of_executed_units: 900\n";
+        assert_eq!(reached(said), "         900 inputs, 20,617 of 41,234 edges (50 %)");
+        assert_eq!(reached("nothing"), "           0 inputs, 0 of 0 edges (0 %)");
+        assert_eq!(end("a\nb"), "a\nb");
     }
 }

@@ -17,6 +17,7 @@ mod fuzz;
 mod hil;
 mod judge;
 mod linuxcnc;
+mod mutants;
 mod page;
 mod repository;
 mod rooms;
@@ -191,6 +192,15 @@ enum Task {
         #[arg(long, default_value_t = 20)]
         seconds: u64,
     },
+    /// Mistakes put into the code of the servo and of the flash, one at a time: a test has to notice each, or docs/mutants.md says
+    /// why it does not matter. Takes hours.
+    Mutants {
+        /// Only folders whose names hold this text, for instance rewrite or ledger.
+        folder: Option<String>,
+        /// Only one part of so many, for instance 0/8.
+        #[arg(long, value_name = "K/N")]
+        shard: Option<String>,
+    },
     /// The report page: its build as committed, and pages that the program wrote in a real browser.
     Page {
         /// Renew the committed build and the reference pictures.
@@ -283,6 +293,9 @@ fn main() -> ExitCode {
         Task::Fuzz { target, runs, seconds } => {
             let length = runs.map_or(fuzz::Length::Seconds(seconds), fuzz::Length::Runs);
             report.run(Step::new("fuzz", || fuzz::check(target.as_deref(), length)));
+        }
+        Task::Mutants { folder, shard } => {
+            report.run(Step::new("mutants", || mutants::check(folder.as_deref(), shard.as_deref())));
         }
         Task::Page { write } => report.run(Step::new("page", || page::check(write))),
         Task::Web { no_tests, fast } => {

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 const CORE: [(&str, &[&str]); 5] = [
     ("core/units", &["errors", "checksum", "geometry"]),
     ("core/rs274", &[]),
-    ("core/wire", &["image", "rewrite", "link"]),
+    ("core/wire", &["image", "update", "rewrite", "link"]),
     ("core/model", &["probe", "cut", "identify", "correct", "process"]),
     ("core", &["job", "errors"]),
 ];

@@ -3,11 +3,14 @@
 //! A tick of the rewriter and the steps of the cut are measured in the middle of paths of 10, 1,000 and 100,000 equal
 //! segments: their cost must not depend on the length. The search for the finishing contours is measured whole, on programs
 //! of several shapes and lengths, reading included. Identification and design are measured whole, on the papers'
-//! corner and on a pocket.
+//! corner and on a pocket; so is the way from program and measurement to the image, as a device goes it by itself.
 
 #[allow(dead_code)]
 #[path = "../../model/tests/all/corner/mod.rs"]
 mod corner;
+#[allow(dead_code)]
+#[path = "../../tests/all/job_support/mod.rs"]
+mod job_support;
 mod part;
 #[allow(dead_code)]
 #[path = "../../wire/tests/all/rewrite_support/mod.rs"]
@@ -95,6 +98,8 @@ pub const KERNELS: &[Kernel] = &[
     Kernel { name: "identify/pocket", calls: 1, watched: true, prepare: || whole::identify(whole::pocket()) },
     Kernel { name: "design/corner", calls: 1, watched: false, prepare: || whole::design(whole::corner()) },
     Kernel { name: "design/pocket", calls: 1, watched: true, prepare: || whole::design(whole::pocket()) },
+    Kernel { name: "on-board/corner", calls: 1, watched: false, prepare: || whole::image(job_support::corner()) },
+    Kernel { name: "on-board/pocket", calls: 1, watched: true, prepare: || whole::image(job_support::pocket()) },
 ];
 
 /// Samples of one period of the wave, and their distance.

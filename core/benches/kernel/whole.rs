@@ -1,7 +1,8 @@
-//! Identification and design of a whole part, as `truepath correct` does them.
+//! Identification and design of a whole part, as `truepath correct` does them, and all that a device does by itself.
 
 use super::Work;
 use super::corner::{coefficients, corner as papers_corner, path, real, setup};
+use super::job_support::{self, Room};
 use super::part;
 use std::hint::black_box;
 use truepath_core::correct::{
@@ -10,6 +11,8 @@ use truepath_core::correct::{
 use truepath_core::cut::{Coefficients, Compliance, ForceTable, Path, State, WallLaw};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{self as fit, Observation, PredictionWorkspace, Prior};
+use truepath_core::image::{DEVICE_NODES, image_bytes};
+use truepath_core::job;
 use truepath_core::units::{Offset, Real};
 
 /// Distance of the samples, as the command line takes it.
@@ -131,5 +134,15 @@ pub fn design(part: Part) -> Work {
     Box::new(move || {
         let machine = parameters.machine(&part.path, &table);
         black_box(correct::design(&machine, &wanted, &mut nodes, &mut predicted, &mut lent.design(), &mut |_| ()));
+    })
+}
+
+/// From program and measurement to the image, in the memory of a device.
+pub fn image(part: job_support::Part) -> Work {
+    let mut room: Box<Room> = Box::default();
+    let mut out = vec![0; image_bytes(DEVICE_NODES)];
+    Box::new(move || {
+        let made = job::image(&part.job, part.program, part.probe, &mut room.workspace(), &mut out, &mut |_, _| ());
+        assert!(black_box(made).is_ok());
     })
 }

@@ -11,7 +11,7 @@ errors! {
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum WarningKind {
         /// The program lacks one or both `%`.
-        PercentMissing = "W001", "the program does not begin and end with `%`; make sure that the file is complete";
+        PercentMissing = "W001", "the program has one of the two `%` alone; make sure that the file is complete";
         /// There is text before the first or behind the second `%`.
         OutsidePercent = "W002", "text outside the two `%` is ignored";
         /// Neither M2 nor M30.

@@ -7,6 +7,7 @@
 //! |---|---|
 //! | [`image`] | correction array ↔ bytes |
 //! | [`rewrite`] | setpoint → corrected setpoint, the only code in the servo cycle |
+//! | [`update`] | the signed head of a firmware update |
 //! | [`link`] | frames and messages of both links, and what becomes of a frame |
 #![no_std]
 #![forbid(unsafe_code)]
@@ -26,3 +27,4 @@ extern crate std;
 pub mod image;
 pub mod link;
 pub mod rewrite;
+pub mod update;

@@ -68,6 +68,11 @@ pub fn run<'a, F: NorFlash>(
                 *now_us = now_us.saturating_add(by.into());
                 let now = *now_us;
                 servo.with(|servo| servo.watch(now));
+                config.count_stamps(servo);
+                restart = config.trial_is_over(now, servo);
+                if restart.is_some() {
+                    break;
+                }
             }
         }
     }

@@ -55,6 +55,9 @@ pub async fn serve<F: NorFlash>(
                 if let Ok(mut guard) = configuration.try_lock() {
                     let Configuration { service, servo } = &mut *guard;
                     service.rest(servo);
+                    if let Some(restart) = service.trial_is_over(board.now_us(), servo) {
+                        board.restart(restart);
+                    }
                 }
                 continue;
             }

@@ -13,6 +13,7 @@ impl<'a, F: NorFlash> Handler<'a, F> {
     pub fn compute<'s>(&mut self, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         idle(servo)?;
         self.not_computing()?;
+        self.slots_are_free()?;
         // Nobody could sign what is made here.
         if !self.ledger.keys().is_open() {
             return Err(Denial::Untrusted(SignatureError::Missing));

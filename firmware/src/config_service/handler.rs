@@ -2,12 +2,15 @@
 
 use embedded_storage::nor_flash::NorFlash;
 use truepath_core::image::DeviceClass;
-use truepath_core::link::{ActiveImage, DEVICE_ID_BYTES, Denial, DeviceSettings, Item, Progress, ResetCause, Slot};
+use truepath_core::link::{
+    ActiveImage, DEVICE_ID_BYTES, Denial, DeviceSettings, Item, Progress, ResetCause, Slot, TimingMeter, UpdateStage,
+};
 use truepath_core::rewrite::Mode;
 
 use super::session::Access;
 use crate::computation::{Computation, ProgressMeter};
 use crate::ledger::Ledger;
+use crate::program::ProgramUpload;
 use crate::ram_upload::RamUploads;
 use crate::servo::ServoAccess;
 use crate::slots::{SLOT_IMAGE_BYTES, Upload};
@@ -46,6 +49,15 @@ pub struct Board {
     pub id: [u8; DEVICE_ID_BYTES],
     /// Drawn by its random number generator at the start, if it has one: nobody else knows it.
     pub secret: Option<[u8; 32]>,
+    /// Counts per second of [`Clock::count`](crate::clock::Clock::count).
+    pub counter_hz: u32,
+}
+
+/// The device is to be reset, after what has been answered is sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Restart {
+    /// By letting the watchdog run out.
+    pub watchdog: bool,
 }
 
 /// Everything the service keeps, apart from how requests come.
@@ -74,11 +86,15 @@ pub(super) struct Handler<'a, F> {
     /// What is being uploaded.
     pub current: Option<Item>,
     pub image_upload: Option<Upload>,
+    pub program_upload: Option<ProgramUpload>,
+    /// Where an update of the program stands.
+    pub stage: UpdateStage,
     /// A computation that nobody has fetched yet.
     pub computation: Option<Computation<'a>>,
     /// Whether a computation is under way, fetched or not.
     pub computing: bool,
     pub progress: Progress,
+    pub timing: TimingMeter,
     pub meter: &'a ProgressMeter,
 }
 

@@ -19,6 +19,7 @@ mod log;
 mod operate;
 mod report;
 mod session;
+mod update;
 mod upload;
 
 use embedded_storage::nor_flash::NorFlash;
@@ -26,7 +27,7 @@ use heapless::Vec;
 use truepath_core::image::Rights;
 use truepath_core::link::{
     ActiveImage, Ask, CHUNK_BYTES, Change, Deframer, Denial, Framed, Item, LinkError, LogEntry, PACKET_BYTES, Progress,
-    Reply, Request, Response, decode_request, encode,
+    Reply, Request, Response, TimingMeter, decode_request, encode,
 };
 use truepath_core::rewrite::{Mode, Rewriter};
 
@@ -35,15 +36,8 @@ use crate::ledger::Ledger;
 use crate::ram_upload::{RamUpload, RamUploads};
 use crate::servo::{Servo, ServoAccess};
 use crate::slots;
-pub use handler::{Board, IMAGE_BYTES, Memory};
+pub use handler::{Board, IMAGE_BYTES, Memory, Restart};
 use handler::{Handler, idle};
-
-/// The device is to be reset, after what has been answered is sent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Restart {
-    /// By letting the watchdog run out.
-    pub watchdog: bool,
-}
 
 /// The service.
 pub struct ConfigService<'a, F: NorFlash> {
@@ -63,6 +57,8 @@ impl<'a, F: NorFlash> ConfigService<'a, F> {
         let mut ledger = Ledger::open(&mut flash);
         // A lost count of boots does no harm: what cannot be written here fails again, and loudly, at the next change.
         let _ = ledger.change(&mut flash, |now| now.boots = now.boots.saturating_add(1));
+        let stage = update::stage(&mut flash);
+        update::count(&mut flash, &mut ledger, stage);
         let Memory { image, recording, program, job, probe, meter } = memory;
         let slots = [0, 1].map(|slot| slots::survey(&mut flash, slot, image));
         let settings = ledger.now().settings_in_use();
@@ -89,9 +85,12 @@ impl<'a, F: NorFlash> ConfigService<'a, F> {
             ram_uploads: Some(ram_uploads),
             current: None,
             image_upload: None,
+            program_upload: None,
+            stage,
             computation: None,
             computing: false,
             progress: Progress::default(),
+            timing: TimingMeter::new(&settings, board.counter_hz),
             meter,
         };
         // An image that cannot be used any more leaves the device without one; `Status` and `List` say so.
@@ -130,10 +129,20 @@ impl<'a, F: NorFlash> ConfigService<'a, F> {
         self.handler.finish(computation, servo);
     }
 
-    /// Called while nothing is asked, as from the timer of a millisecond: writes what the log has in RAM, if the flash may be
-    /// written.
+    /// Called while nothing is asked, as from the timer of a millisecond: counts the stamps of the frames since the last time,
+    /// and writes what the log has in RAM, if the flash may be written.
     pub fn rest(&mut self, servo: &mut impl ServoAccess<'a>) {
+        self.count_stamps(servo);
         self.handler.rest(servo);
+    }
+    /// Counts the stamps of the frames since the last time.
+    pub fn count_stamps(&mut self, servo: &mut impl ServoAccess<'a>) {
+        self.handler.count_stamps(servo);
+    }
+
+    /// Called as [`ConfigService::rest`]: the restart that ends the trial of a program that nobody has confirmed.
+    pub fn trial_is_over(&self, now_us: u64, servo: &mut impl ServoAccess<'a>) -> Option<Restart> {
+        self.handler.trial_is_over(now_us, servo)
     }
 
     /// Bytes of the stream; `send` gets the answer to each undamaged request. After a request to restart the rest of
@@ -224,6 +233,7 @@ impl<'a, F: NorFlash> Handler<'a, F> {
             Ask::ClearCounters => {
                 idle(servo)?;
                 servo.with(|servo| servo.clear_counters());
+                self.restart_timing(servo);
                 self.keep(self.entry(Change::CountersCleared));
                 Ok(Reply::Done)
             }
@@ -257,6 +267,14 @@ impl<'a, F: NorFlash> Handler<'a, F> {
             Ask::Logout => Ok(self.logout()),
             Ask::Session => Ok(Reply::Session(self.session())),
             Ask::ProvisionAs { key, rights } => self.provision(key, rights, servo),
+            Ask::Timing => {
+                self.count_stamps(servo);
+                Ok(Reply::Timing(self.timing.timing()))
+            }
+            Ask::Update => Ok(Reply::Update(self.update())),
+            Ask::Install => self.install(servo),
+            Ask::Confirm => self.confirm(servo),
+            Ask::ProvisionFirmware { key, rights } => self.provision(key, Rights { firmware: true, ..rights }, servo),
         }
     }
 }
@@ -287,5 +305,7 @@ const fn changes(ask: &Ask<'_>) -> bool {
             | Ask::Keys
             | Ask::Log { .. }
             | Ask::Session
+            | Ask::Timing
+            | Ask::Update
     )
 }

@@ -68,8 +68,6 @@ impl<'a, F: NorFlash> Handler<'a, F> {
             mode => return Err(Denial::Mode(mode)),
         }
         settings.check().map_err(Denial::Settings)?;
-        let wrong = |error| Denial::Settings(DeviceSettingsError::Rewriter(error));
-        let bare = Rewriter::new(settings.rewriter, None).map_err(wrong)?;
         let before = self.settings();
         // The image must go with the new settings before they are kept.
         self.reload(&settings.rewriter, servo).or_else(|denial| {
@@ -80,7 +78,8 @@ impl<'a, F: NorFlash> Handler<'a, F> {
             self.reload(&before.rewriter, servo)?;
             return Err(denial);
         }
-        servo.with(|servo| servo.configure(settings, bare)).map_err(Denial::Refused)?;
+        take_over(settings, servo)?;
+        self.restart_timing(servo);
         Ok(Reply::Done)
     }
 
@@ -92,6 +91,15 @@ impl<'a, F: NorFlash> Handler<'a, F> {
         }
         Ok(self.ledger.change(&mut self.flash, |now| now.settings = Some(settings))?)
     }
+}
+
+/// Gives the servo settings that were checked. On its own: the rewriter made here is not to stand on the stack under every other
+/// request.
+#[inline(never)]
+fn take_over<'a>(settings: DeviceSettings, servo: &mut impl ServoAccess<'a>) -> Result<(), Denial> {
+    let wrong = |error| Denial::Settings(DeviceSettingsError::Rewriter(error));
+    let bare = Rewriter::new(settings.rewriter, None).map_err(wrong)?;
+    servo.with(|servo| servo.configure(settings, bare)).map_err(Denial::Refused)
 }
 
 /// Room for the encoding of any settings: 32 numbers of ten bytes at most.

@@ -2,10 +2,12 @@
 
 use embedded_storage::nor_flash::NorFlash;
 use truepath_core::image::{DEVICE_NODES, FORMAT, SEMANTICS};
-use truepath_core::link::{CHUNK_BYTES, Denial, DeviceStatus, Hello, LINK_VERSION, Progress, Reply, Slot};
+use truepath_core::link::{
+    CHUNK_BYTES, Denial, DeviceStatus, Hello, LINK_VERSION, Progress, Reply, STAMPS_AT_ONCE, Slot, TimingMeter,
+};
 
 use super::handler::Handler;
-use crate::servo::ServoAccess;
+use crate::servo::{STAMPS, ServoAccess};
 use crate::slots::SLOT_IMAGE_BYTES;
 
 impl<'a, F: NorFlash> Handler<'a, F> {
@@ -64,6 +66,23 @@ impl<'a, F: NorFlash> Handler<'a, F> {
             return Err(Denial::NoRecording { total });
         }
         Ok(Reply::Recording { total, from, bytes: scratch.get(..used).unwrap_or(&[]) })
+    }
+
+    /// Counts the stamps that the setpoint path has left. Frames go on arriving meanwhile; no more are taken than the ring
+    /// holds.
+    pub fn count_stamps(&mut self, servo: &mut impl ServoAccess<'a>) {
+        for _ in 0..=STAMPS / STAMPS_AT_ONCE {
+            let (missed, stamps) = servo.with(|servo| servo.drain_stamps());
+            self.timing.take(missed, &stamps);
+            if !stamps.is_full() {
+                break;
+            }
+        }
+    }
+    /// Counts anew, with the settings in force.
+    pub fn restart_timing(&mut self, servo: &mut impl ServoAccess<'a>) {
+        self.count_stamps(servo);
+        self.timing = TimingMeter::new(&self.settings(), self.board.counter_hz);
     }
 
     pub fn progress(&self) -> Progress {

@@ -20,16 +20,18 @@ impl<'a, F: NorFlash> Handler<'a, F> {
         self.not_computing()?;
         self.current = None;
         self.image_upload = None;
-        let offset = if item == Item::Image {
-            self.begin_image(length, crc)?
-        } else {
-            self.ram_upload(item)?.begin(length, crc)?
+        self.program_upload = None;
+        let offset = match item {
+            Item::Image => self.begin_image(length, crc)?,
+            Item::Firmware => self.begin_update(length, servo)?,
+            Item::Program | Item::Job | Item::Probe => self.ram_upload(item)?.begin(length, crc)?,
         };
         self.current = Some(item);
         Ok(Reply::Next { offset })
     }
 
     fn begin_image(&mut self, length: u32, crc: u32) -> Result<u32, Denial> {
+        self.slots_are_free()?;
         let most = SLOT_IMAGE_BYTES as u32;
         if length == 0 || length > most {
             return Err(Denial::TooLong { item: Item::Image, length, most });
@@ -60,6 +62,12 @@ impl<'a, F: NorFlash> Handler<'a, F> {
         self.not_computing()?;
         let item = self.current.ok_or(Denial::NoUpload)?;
         let too_long = bytes.len() > CHUNK_BYTES;
+        if let Some(upload) = self.program_upload.filter(|_| item == Item::Firmware) {
+            if too_long {
+                return Err(Denial::Offset { expected: upload.next(), found: offset, bytes: bytes.len() as u32 });
+            }
+            return Ok(Reply::Next { offset: self.update_chunk(offset, bytes, servo)? });
+        }
         let Some(upload) = self.image_upload.as_mut().filter(|_| item == Item::Image) else {
             let ram_upload = self.ram_upload(item)?;
             if too_long {
@@ -88,6 +96,9 @@ impl<'a, F: NorFlash> Handler<'a, F> {
         idle(servo)?;
         self.not_computing()?;
         let item = self.current.ok_or(Denial::NoUpload)?;
+        if item == Item::Firmware {
+            return Ok(Reply::Committed { slot: 0, crc: self.commit_update(servo)? });
+        }
         if item != Item::Image {
             let crc = self.ram_upload(item)?.commit()?;
             return Ok(Reply::Committed { slot: 0, crc });
@@ -119,7 +130,7 @@ impl<'a, F: NorFlash> Handler<'a, F> {
             Item::Program => Ok(&mut ram_uploads.program),
             Item::Job => Ok(&mut ram_uploads.job),
             Item::Probe => Ok(&mut ram_uploads.probe),
-            Item::Image => Err(Denial::NoUpload),
+            Item::Image | Item::Firmware => Err(Denial::NoUpload),
         }
     }
 }

@@ -1,7 +1,10 @@
-//! The bank: its sectors and words, and who lives in which sector: image slot A in 0…2, image slot B in 3…5, the
-//! ledger in 6 and 7.
+//! The flash: its sectors and words, and who lives in which sector: image slot A in 0…2, image slot B in 3…5, the
+//! ledger in 6 and 7, what the loader remembers in 8 and 9, the program in 10…14.
 //!
-//! Slots and ledger share no sector, so that an erase for one can never cost the other anything.
+//! Slots and ledger share no sector, so that an erase for one can never cost the other anything. The bank, 0…9, is what the
+//! program writes; the program itself is written by the loader alone. A flash that ends with the bank is that of a device
+//! without a loader. A firmware update lies in both image slots, which have one sector more than a program: the loader
+//! needs it to swap both.
 
 use embedded_storage::nor_flash::ReadNorFlash;
 use truepath_core::image::crc32;
@@ -9,7 +12,7 @@ use truepath_core::image::crc32;
 /// Bytes of a sector, the least that can be erased.
 pub const SECTOR_BYTES: usize = 128 * 1024;
 /// Sectors of the bank.
-pub const SECTORS: usize = 8;
+pub const SECTORS: usize = 10;
 /// Bytes of the bank.
 pub const BANK_BYTES: usize = SECTORS * SECTOR_BYTES;
 /// Bytes of a word, the least that can be programmed.
@@ -23,10 +26,23 @@ pub const BLANK: [u8; WORD_BYTES] = [0xFF; WORD_BYTES];
 pub const SLOT_SECTORS: [Region; 2] = [Region { first: 0, count: 3 }, Region { first: 3, count: 3 }];
 /// Sectors of the ledger.
 pub const LEDGER_SECTORS: Region = Region { first: 6, count: 2 };
+/// Sectors of what the loader remembers.
+pub const LOADER_SECTORS: Region = Region { first: 8, count: 2 };
+/// Sectors of the program.
+pub const PROGRAM_SECTORS: Region = Region { first: 10, count: 5 };
+/// Sectors of an update: both image slots.
+pub const UPDATE_SECTORS: Region = Region { first: 0, count: 6 };
+/// Bytes of the whole flash, the program included.
+pub const FLASH_BYTES: usize = PROGRAM_SECTORS.end() as usize;
+/// Words of the whole flash.
+pub const FLASH_WORDS: usize = FLASH_BYTES / WORD_BYTES;
 /// Bytes of an image slot, head included.
 pub const SLOT_BYTES: usize = 3 * SECTOR_BYTES;
 
-const _: () = assert!(LEDGER_SECTORS.first + LEDGER_SECTORS.count == SECTORS);
+const _: () = assert!(LOADER_SECTORS.first == LEDGER_SECTORS.first + LEDGER_SECTORS.count);
+const _: () = assert!(LOADER_SECTORS.first + LOADER_SECTORS.count == SECTORS && PROGRAM_SECTORS.first == SECTORS);
+const _: () = assert!(UPDATE_SECTORS.first == 0 && UPDATE_SECTORS.count == LEDGER_SECTORS.first);
+const _: () = assert!(UPDATE_SECTORS.count == PROGRAM_SECTORS.count + 1);
 const _: () = assert!(SLOT_SECTORS[0].count * SECTOR_BYTES == SLOT_BYTES);
 const _: () = assert!(SLOT_SECTORS[1].first == SLOT_SECTORS[0].first + SLOT_SECTORS[0].count);
 const _: () = assert!(LEDGER_SECTORS.first == SLOT_SECTORS[1].first + SLOT_SECTORS[1].count);

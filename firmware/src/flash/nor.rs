@@ -1,4 +1,4 @@
-//! A model of the bank in lent RAM, with the rules of the part and power that can fail.
+//! A model of the flash in lent RAM, with the rules of the part and power that can fail.
 //!
 //! Beside the bytes it keeps the state of every word, because a programmed word of ones looks like an erased one and
 //! a torn one like any other. Each program of a word and each erase of a sector is one operation; they are counted,
@@ -8,7 +8,7 @@ use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash, check_erase, check_read, check_write,
 };
 
-use super::bank::{BANK_BYTES, BANK_WORDS, BLANK, SECTOR_BYTES, WORD_BYTES};
+use super::bank::{BLANK, SECTOR_BYTES, WORD_BYTES};
 
 /// State of a word.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -28,7 +28,7 @@ pub enum WordState {
 pub enum NorError {
     /// An offset or a length is not that of whole words or sectors.
     NotAligned,
-    /// Beyond the end of the bank.
+    /// Beyond the end of the flash.
     OutOfBounds,
     /// The word at this offset is torn: its error-correcting code does not agree.
     Ecc {
@@ -111,25 +111,29 @@ impl Remains {
     }
 }
 
-/// The bank.
+/// The flash: as many sectors as bytes, and states of their words, are lent.
 pub struct Nor<'a> {
-    bytes: &'a mut [u8; BANK_BYTES],
-    words: &'a mut [WordState; BANK_WORDS],
+    bytes: &'a mut [u8],
+    words: &'a mut [WordState],
     wear: Wear,
     cut: Option<Cut>,
     powered: bool,
 }
 
 impl<'a> Nor<'a> {
-    /// A bank with the contents that `bytes` and `words` hold.
-    pub fn new(bytes: &'a mut [u8; BANK_BYTES], words: &'a mut [WordState; BANK_WORDS]) -> Self {
+    /// A flash with the contents that `bytes` and `words` hold.
+    pub fn new(bytes: &'a mut [u8], words: &'a mut [WordState]) -> Self {
         Self { bytes, words, wear: Wear::default(), cut: None, powered: true }
     }
-    /// A bank as it leaves the factory.
-    pub fn erased(bytes: &'a mut [u8; BANK_BYTES], words: &'a mut [WordState; BANK_WORDS]) -> Self {
+    /// A flash as it leaves the factory.
+    pub fn erased(bytes: &'a mut [u8], words: &'a mut [WordState]) -> Self {
         bytes.fill(0xFF);
         words.fill(WordState::Blank);
         Self::new(bytes, words)
+    }
+    /// The memory it was made of.
+    pub fn into_memory(self) -> (&'a mut [u8], &'a mut [WordState]) {
+        (self.bytes, self.words)
     }
     /// What has been done to it since it was made.
     pub const fn wear(&self) -> Wear {
@@ -242,7 +246,7 @@ impl ReadNorFlash for Nor<'_> {
         Ok(())
     }
     fn capacity(&self) -> usize {
-        BANK_BYTES
+        self.bytes.len().min(self.words.len() * WORD_BYTES)
     }
 }
 

@@ -192,6 +192,10 @@ impl Ledger {
         }
         Ok(Signed::of(image).map(|signed| (counted, signed.key)))
     }
+    /// The counter below which no image of a pass, or no firmware, is taken.
+    pub fn least<F: NorFlash>(&self, flash: &mut F, of: &Counted) -> u32 {
+        counters::least(flash, of)
+    }
     /// No image of this pass with a lower counter is taken any more. Takes up to two programmed words.
     ///
     /// # Errors

@@ -15,8 +15,7 @@ use wire_support::part::{self, straight};
 use wire_support::{image_of, name, request};
 
 fn bank() -> Nor<'static> {
-    let bytes = vec![0; BANK_BYTES].leak().try_into().unwrap();
-    Nor::erased(bytes, vec![WordState::Blank; BANK_WORDS].leak().try_into().unwrap())
+    Nor::erased(vec![0; BANK_BYTES].leak(), vec![WordState::Blank; BANK_WORDS].leak())
 }
 
 /// A servo whose link falls silent before one of the closures of the configuration service.
@@ -81,6 +80,7 @@ fn silence_between_any_two_steps_of_a_request_leaves_the_device_off_and_in_order
         present: false,
         id: [0; 12],
         secret: None,
+        counter_hz: 1_000_000,
     };
     let (mut service, servo) = ConfigService::start(bank(), memory, board, 0);
     let mut servo = Interrupted { servo, left: None, now_us: 0 };

@@ -16,7 +16,7 @@ impl Memory {
         Self { bytes: vec![0; BANK_BYTES], words: vec![WordState::Torn; BANK_WORDS] }
     }
     fn erased(&mut self) -> Nor<'_> {
-        Nor::erased(self.bytes.as_mut_slice().try_into().unwrap(), self.words.as_mut_slice().try_into().unwrap())
+        Nor::erased(&mut self.bytes, &mut self.words)
     }
 }
 

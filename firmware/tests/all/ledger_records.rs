@@ -8,8 +8,7 @@ use truepath_fw::flash::{BANK_BYTES, BANK_WORDS, Cut, LEDGER_SECTORS, Moment, No
 use truepath_fw::ledger::{Ledger, PLACES, Remembered};
 
 fn erased() -> Nor<'static> {
-    let bytes = vec![0; BANK_BYTES].leak().try_into().unwrap();
-    Nor::erased(bytes, vec![WordState::Blank; BANK_WORDS].leak().try_into().unwrap())
+    Nor::erased(vec![0; BANK_BYTES].leak(), vec![WordState::Blank; BANK_WORDS].leak())
 }
 
 fn part(part_serial: u32) -> Spent {

@@ -11,8 +11,7 @@ use wire_support::*;
 const PARTS: u32 = 100;
 
 fn erased() -> Nor<'static> {
-    let bytes = vec![0; BANK_BYTES].leak().try_into().unwrap();
-    Nor::erased(bytes, vec![WordState::Blank; BANK_WORDS].leak().try_into().unwrap())
+    Nor::erased(vec![0; BANK_BYTES].leak(), vec![WordState::Blank; BANK_WORDS].leak())
 }
 
 fn repeated(rig: &mut Rig, last: u32) {

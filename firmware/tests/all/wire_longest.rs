@@ -79,10 +79,7 @@ impl Meter {
         fn lent<T: Clone>(blank: T, count: usize) -> &'static mut [T] {
             vec![blank; count].leak()
         }
-        let bank = Nor::erased(
-            lent(0xFF, BANK_BYTES).try_into().unwrap(),
-            lent(WordState::Blank, BANK_WORDS).try_into().unwrap(),
-        );
+        let bank = Nor::erased(lent(0xFF, BANK_BYTES), lent(WordState::Blank, BANK_WORDS));
         let memory = Memory {
             image: lent(0, IMAGE_BYTES),
             recording: lent(0, 48_000),
@@ -99,6 +96,7 @@ impl Meter {
             present,
             id: [3; 12],
             secret: None,
+            counter_hz: 1_000_000,
         };
         let device = Device::start(Counted(bank, Rc::clone(&work)), memory, board, 0);
         Self { device, work, id: 0, session: None, challenge: None, most: vec![] }

@@ -55,7 +55,15 @@ pub fn asks(image: &[u8]) -> Vec<Ask<'_>> {
         Ask::Login { key: public(&owner(1)).id(), role: Role::Operate, signature: [[1; 32]; 2] },
         Ask::Logout,
         Ask::Session,
-        Ask::ProvisionAs { key: public(&owner(1)), rights: Rights { role: Role::Operate, signs: false } },
+        Ask::ProvisionAs {
+            key: public(&owner(1)),
+            rights: Rights { role: Role::Operate, signs: false, firmware: false },
+        },
+        Ask::Timing,
+        Ask::Update,
+        Ask::Install,
+        Ask::Confirm,
+        Ask::ProvisionFirmware { key: public(&owner(1)), rights: Rights::default() },
     ]
 }
 

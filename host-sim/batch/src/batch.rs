@@ -8,6 +8,7 @@ use crate::control::{Chart, quantile, share_below};
 pub use crate::filter::Cause;
 use crate::filter::{DATUM, Estimate, Filtered, LEVEL, LEVEL_SLOPE, SIZE, SIZE_SLOPE, Step, follow};
 use crate::series::{Event, Part, Place, Series, any_is_pushed};
+use truepath_ground::hypotenuse::hypot;
 use truepath_ground::length::Unit;
 
 /// What is asked of a batch.
@@ -187,7 +188,7 @@ impl Batch {
                     place: series.places[at].clone(),
                     chart: Chart::of(&plain, request.tolerance_mm, per_chart),
                     deviations_mm: deviations,
-                    next_mm: Known { value, sigma: sigma.hypot(filtered.noise_mm) },
+                    next_mm: Known { value, sigma: hypot(sigma, filtered.noise_mm) },
                 }
             })
             .collect();

@@ -11,6 +11,7 @@
 //! Level and size are counted from the first part. A new cutter frees level, size and their slopes, a lot the level, a set-up the datum.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
+use truepath_ground::hypotenuse::hypot;
 
 use crate::series::{Event, Part, Place, Series, any_is_pushed};
 
@@ -236,7 +237,7 @@ fn cause_of(series: &Series, part: &Part, noise_mm: f64, (mean, covariance): &(V
             uneven(series, &mut covariance, STEP[LEVEL]);
         }
         let (wild, fit) = update(series, part, noise_mm, (&mut mean, &mut covariance), cause.states(), true);
-        let change = mean[first..].iter().fold(0.0, |sum: f64, v| sum.hypot(*v));
+        let change = mean[first..].iter().fold(0.0, |sum: f64, v| hypot(sum, *v));
         let signed = if cause == Cause::Datum { change } else { mean[first] };
         let sigma = (first..mean.len()).map(|at| covariance[at][at].max(0.0).sqrt()).fold(0.0, f64::max);
         // A reading set aside is as improbable as one at the bound.

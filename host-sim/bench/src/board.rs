@@ -36,7 +36,29 @@ pub struct Exchange {
 }
 
 /// Ids between two series of requests.
-pub(super) const IDS: u16 = 4_099;
+const IDS: u16 = 4_099;
+
+/// What the clients of a board, one after the other, have in common: ids that do not come twice, and who logs in.
+#[derive(Debug, Default)]
+pub struct Clients {
+    first_id: u16,
+    access: Option<Access>,
+}
+
+impl Clients {
+    /// Their ids begin some way behind this one.
+    pub fn from_id(first_id: u16) -> Self {
+        Self { first_id, access: None }
+    }
+    /// The next one, on the wire of the board.
+    pub fn client<'w>(&mut self, wire: &'w mut dyn Wire) -> Client<&'w mut dyn Wire> {
+        Client::new(wire, self.next_id()).with_access(self.access.clone())
+    }
+    fn next_id(&mut self) -> u16 {
+        self.first_id = self.first_id.wrapping_add(IDS);
+        self.first_id
+    }
+}
 
 /// A board under test.
 pub trait Board {
@@ -46,15 +68,21 @@ pub trait Board {
     fn is_stepped(&self) -> bool;
     /// A client of its configuration link.
     fn client(&mut self) -> Client<&mut dyn Wire>;
+    /// What its clients have in common.
+    fn clients(&mut self) -> &mut Clients;
     /// Logs in with a key from now on, where the device asks for it; or does not any more.
-    fn use_access(&mut self, _access: Option<Access>) {}
+    fn use_access(&mut self, access: Option<Access>) {
+        self.clients().access = access;
+    }
     /// The number of its session.
-    fn session(&self) -> Option<u64> {
-        None
+    fn session(&mut self) -> Option<u64> {
+        self.clients().access.as_ref().and_then(Access::session)
     }
     /// The first id for a new series of requests, far from those of the series before: a device takes a repeated id
     /// for a repeated request.
-    fn first_id(&mut self) -> u16;
+    fn first_id(&mut self) -> u16 {
+        self.clients().next_id()
+    }
     /// Tells of every answer from now on, if it knows of them one by one, and ends an exchange when that is asked for.
     fn watched_by(&mut self, _watch: Arc<Watch>) {}
     /// Sends events and collects what comes back, up to what is expected.

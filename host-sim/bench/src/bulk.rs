@@ -3,8 +3,7 @@
 use std::io;
 use std::time::{Duration, Instant};
 
-use super::access::Access;
-use super::board::{Board, Event, Exchange, IDS};
+use super::board::{Board, Clients, Event, Exchange};
 use super::client::Client;
 use super::error::BenchError;
 use super::records::{Channel, Records, write, write_event};
@@ -28,8 +27,7 @@ pub const BATCH_BYTES: usize = 2 << 20;
 #[derive(Debug)]
 pub struct BulkBoard<B> {
     wire: BulkWire<B>,
-    first_id: u16,
-    access: Option<Access>,
+    clients: Clients,
 }
 
 /// The configuration link as a stream.
@@ -42,7 +40,7 @@ struct BulkWire<B> {
 impl<B: Bulk> BulkBoard<B> {
     /// A board.
     pub fn new(bulk: B) -> Self {
-        Self { wire: BulkWire { bulk, arrived: vec![] }, first_id: 0, access: None }
+        Self { wire: BulkWire { bulk, arrived: vec![] }, clients: Clients::default() }
     }
 }
 
@@ -71,20 +69,10 @@ impl<B: Bulk> Board for BulkBoard<B> {
         true
     }
     fn client(&mut self) -> Client<&mut dyn Wire> {
-        let first = self.first_id();
-        let access = self.access.clone();
-        let wire: &mut dyn Wire = &mut self.wire;
-        Client::new(wire, first).with_access(access)
+        self.clients.client(&mut self.wire)
     }
-    fn use_access(&mut self, access: Option<Access>) {
-        self.access = access;
-    }
-    fn session(&self) -> Option<u64> {
-        self.access.as_ref().and_then(Access::session)
-    }
-    fn first_id(&mut self) -> u16 {
-        self.first_id = self.first_id.wrapping_add(IDS);
-        self.first_id
+    fn clients(&mut self) -> &mut Clients {
+        &mut self.clients
     }
 
     fn exchange(&mut self, events: &[Event]) -> Result<Exchange, BenchError> {

@@ -168,6 +168,9 @@ impl<'a> Campaign<'a> {
                 break;
             }
             self.outcome.round_trips_ns.extend(exchange.round_trips_ns);
+            let timing = board.client().timing()?;
+            // The board has seen other ids since, and the session may be another one.
+            (self.id, self.session) = (board.first_id(), board.session());
             progress(&RunStatus {
                 injected: self.cable.injected(),
                 counters: self.expectation.endpoint().counters(),
@@ -176,6 +179,7 @@ impl<'a> Campaign<'a> {
                 armed: self.outcome.armed,
                 largest_nm: self.judge.largest_nm(),
                 elapsed: self.outcome.elapsed,
+                timing: timing.as_ref(),
                 trail: &self.trail,
             });
             self.trail.clear();

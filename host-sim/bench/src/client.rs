@@ -10,7 +10,7 @@ use truepath_core::checksum::crc32;
 use truepath_core::image::Role;
 use truepath_core::link::{
     AccessError, Ask, CHUNK_BYTES, Denial, DeviceKeys, DeviceSession, DeviceSettings, DeviceStatus, Item, LinkError,
-    LogEntry, PACKET_BYTES, Reply, Request, Response, SessionEnd, Slot, decode, encode_request,
+    LogEntry, PACKET_BYTES, Reply, Request, Response, SessionEnd, Slot, Timing, decode, encode_request,
 };
 
 use super::access::Access;
@@ -43,10 +43,10 @@ pub struct Committed {
     pub crc: u32,
 }
 
-/// Time for the answer to a request; erasing a flash sector takes up to two seconds.
-const PATIENCE: Duration = Duration::from_millis(4000);
-/// How often a request is sent.
-const ATTEMPTS: u32 = 3;
+/// Time for the answer to a request before it is sent again: the longest erase of a sector of the flash (STM32H743).
+const PATIENCE: Duration = Duration::from_secs(4);
+/// How often a request is sent. `Begin` erases three sectors.
+const ATTEMPTS: u32 = 4;
 
 impl<W: Wire> Client<W> {
     /// A client on a wire. Its ids begin at `first_id`, best at random, so that those of an earlier client are not
@@ -263,6 +263,17 @@ impl<W: Wire> Client<W> {
             other => Err(foreign(&other?)),
         }
     }
+    /// How regularly setpoints arrive and how fast they are answered; nothing of a firmware that does not count it.
+    ///
+    /// # Errors
+    /// As [`Client::ask`].
+    pub fn timing(&mut self) -> Result<Option<Timing>, BenchError> {
+        match self.ask(Ask::Timing) {
+            Ok(Reply::Timing(timing)) => Ok(Some(timing)),
+            Err(BenchError::Denied(Denial::Unknown)) => Ok(None),
+            other => Err(foreign(&other?)),
+        }
+    }
     /// Both image slots.
     ///
     /// # Errors
@@ -329,4 +340,20 @@ pub(super) fn foreign(reply: &Reply<'_>) -> BenchError {
 fn name(ask: &Ask<'_>) -> String {
     let text = format!("{ask:?}");
     text.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_client_is_as_patient_as_the_document_says_and_outlasts_the_longest_request() {
+        let document = include_str!("../../../docs/link.md").replace('\n', " ");
+        let (again, all) = (PATIENCE.as_secs(), PATIENCE.as_secs() * u64::from(ATTEMPTS));
+        for said in [format!("asks again after {again} s"), format!("gives up after {all} s")] {
+            assert!(document.contains(&said), "docs/link.md does not say \"{said}\"");
+        }
+        assert!(document.contains("up to 4 s a sector: `Begin` for an image (one to three sectors)"));
+        assert!(all > 3 * 4, "{all} s");
+    }
 }

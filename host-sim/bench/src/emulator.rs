@@ -19,6 +19,10 @@ use truepath_ground::interruption::{Kind, Temporary, hold};
 
 /// Where `cargo xtask firmware` puts the firmware, from the root of the repository.
 pub const ELF: &str = "target/firmware/truepath-virtual";
+/// Where it puts the loader.
+pub const LOADER: &str = "target/firmware/updatable/truepath-virtual-loader";
+/// Where the loader looks for a program at power-up.
+const FACTORY: u32 = 0x2_0000;
 const QEMU: &str = "qemu-system-arm";
 const PSRAM_BYTES: u64 = 16 << 20;
 const MAGIC: u32 = 0x4b42_5054;
@@ -49,6 +53,18 @@ pub struct Emulator {
 /// # Errors
 /// There is none.
 pub fn find_elf(elf: Option<&Path>) -> Result<PathBuf, BenchError> {
+    find(elf, ELF)
+}
+
+/// The same of the loader.
+///
+/// # Errors
+/// As [`find_elf`].
+pub fn find_loader(elf: Option<&Path>) -> Result<PathBuf, BenchError> {
+    find(elf, LOADER)
+}
+
+fn find(elf: Option<&Path>, usual: &str) -> Result<PathBuf, BenchError> {
     let missing = |what: &Path| BenchError::Missing {
         what: format!("the firmware of the virtual board ({})", what.display()),
         remedy: "run cargo xtask firmware in the repository, or name the file with --elf".to_owned(),
@@ -58,8 +74,8 @@ pub fn find_elf(elf: Option<&Path>) -> Result<PathBuf, BenchError> {
         Some(path) => Err(missing(path)),
         None => {
             let here = std::env::current_dir().unwrap_or_default();
-            let found = here.ancestors().map(|folder| folder.join(ELF)).find(|path| path.is_file());
-            found.ok_or_else(|| missing(Path::new(ELF)))
+            let found = here.ancestors().map(|folder| folder.join(usual)).find(|path| path.is_file());
+            found.ok_or_else(|| missing(Path::new(usual)))
         }
     }
 }
@@ -70,7 +86,7 @@ impl Emulator {
     /// # Errors
     /// QEMU is missing, or the firmware does not come up.
     pub fn start(elf: &Path) -> Result<Self, BenchError> {
-        Self::made(elf, false)
+        Self::made(elf, None, false)
     }
 
     /// The same with its button held.
@@ -78,10 +94,18 @@ impl Emulator {
     /// # Errors
     /// As [`Self::start`].
     pub fn attended(elf: &Path) -> Result<Self, BenchError> {
-        Self::made(elf, true)
+        Self::made(elf, None, true)
     }
 
-    fn made(elf: &Path, held: bool) -> Result<Self, BenchError> {
+    /// The loader with a program beside it, as it lies in the flash; the button is held.
+    ///
+    /// # Errors
+    /// As [`Self::start`].
+    pub fn loaded(loader: &Path, program: &Path) -> Result<Self, BenchError> {
+        Self::made(loader, Some(program), true)
+    }
+
+    fn made(elf: &Path, program: Option<&Path>, held: bool) -> Result<Self, BenchError> {
         let opened = |e: io::Error| BenchError::open("the folder of the emulator", &e);
         let (folder, temporary) = {
             let mut hold = hold();
@@ -105,7 +129,13 @@ impl Emulator {
             command.args(["-serial", &format!("chardev:{link}")]);
         }
         command.args(["-serial", "null", "-serial", "file:log.defmt", "-kernel"]);
-        command.arg(fs::canonicalize(elf).map_err(|e| BenchError::open(elf.display().to_string(), &e))?);
+        let whole = |path: &Path| fs::canonicalize(path).map_err(|e| BenchError::open(path.display().to_string(), &e));
+        command.arg(whole(elf)?);
+        if let Some(program) = program {
+            // A comma in a name is written twice.
+            let file = whole(program)?.display().to_string().replace(',', ",,");
+            command.args(["-device", &format!("loader,file={file},addr={FACTORY:#x},force-raw=on")]);
+        }
         let process = command.spawn().map_err(|e| match e.kind() {
             io::ErrorKind::NotFound => BenchError::Missing {
                 what: QEMU.to_owned(),

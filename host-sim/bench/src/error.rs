@@ -65,6 +65,9 @@ impl From<BenchError> for InputError {
         if let BenchError::Denied(Denial::Access(inner)) = &error {
             return Self::of_core(inner.code(), error.to_string(), "", inner.help());
         }
+        if let BenchError::Denied(Denial::Update(inner)) = &error {
+            return Self::of_core(inner.code(), error.to_string(), "", inner.help());
+        }
         let (row, help) = match &error {
             BenchError::Open { .. } => (H001, H001.remedy),
             BenchError::Missing { remedy, .. } => (H002, remedy.as_str()),

@@ -67,10 +67,7 @@ impl InProcess {
     }
 
     fn made(present: bool) -> Result<Self, BenchError> {
-        let unfit = |_| BenchError::Foreign("the sizes of the flash model".to_owned());
-        let bytes = lasting(0, BANK_BYTES).try_into().map_err(unfit)?;
-        let unfit = |_| BenchError::Foreign("the sizes of the flash model".to_owned());
-        let words = lasting(WordState::Blank, BANK_WORDS).try_into().map_err(unfit)?;
+        let (bytes, words) = (lasting(0, BANK_BYTES), lasting(WordState::Blank, BANK_WORDS));
         let memory = Memory {
             image: lasting(0, IMAGE_BYTES),
             recording: lasting(0, RECORDING_BYTES),
@@ -86,6 +83,7 @@ impl InProcess {
             present,
             id: [0; 12],
             secret: None,
+            counter_hz: 1_000_000,
         };
         let device = Device::start(Nor::erased(bytes, words), memory, board, 0);
         Ok(Self { device: Some(device), now_us: 0, output: vec![0; OUTPUT_BYTES], workspace: workspace() })

@@ -41,13 +41,13 @@ mod watch;
 mod wire;
 
 pub use access::Access;
-pub use board::{Board, Event, Exchange};
+pub use board::{Board, Clients, Event, Exchange};
 pub use bulk::{BATCH_BYTES, Bulk, BulkBoard};
 pub use campaign::{Campaign, Outcome, Plan};
 pub use chance::{Chance, Probability};
 pub use client::{Client, Committed};
 pub use difference::Difference;
-pub use emulator::{ELF, Emulator, find_elf};
+pub use emulator::{ELF, Emulator, LOADER, find_elf, find_loader};
 pub use error::BenchError;
 pub use expect::Expectation;
 pub use in_process::InProcess;

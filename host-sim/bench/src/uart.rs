@@ -7,8 +7,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::access::Access;
-use super::board::{Board, Event, Exchange, IDS};
+use super::board::{Board, Clients, Event, Exchange};
 use super::client::Client;
 use super::emulator::Emulator;
 use super::error::BenchError;
@@ -28,8 +27,7 @@ pub struct UartBoard {
     window: u32,
     /// Whether events keep to their time.
     paced: bool,
-    first_id: u16,
-    access: Option<Access>,
+    clients: Clients,
     watch: Option<Arc<Watch>>,
 }
 
@@ -44,18 +42,8 @@ impl UartBoard {
     ) -> Self {
         // Not the ids of the client before: its last answer is still remembered over there.
         let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
-        let first_id = now.as_millis() as u16;
-        Self {
-            _behind: behind,
-            name,
-            setpoints,
-            configuration,
-            window: window.max(1),
-            paced,
-            first_id,
-            access: None,
-            watch: None,
-        }
+        let clients = Clients::from_id(now.as_millis() as u16);
+        Self { _behind: behind, name, setpoints, configuration, window: window.max(1), paced, clients, watch: None }
     }
 }
 
@@ -129,20 +117,10 @@ impl Board for UartBoard {
         false
     }
     fn client(&mut self) -> Client<&mut dyn Wire> {
-        let first = self.first_id();
-        let access = self.access.clone();
-        let wire: &mut dyn Wire = &mut self.configuration;
-        Client::new(wire, first).with_access(access)
+        self.clients.client(&mut self.configuration)
     }
-    fn use_access(&mut self, access: Option<Access>) {
-        self.access = access;
-    }
-    fn session(&self) -> Option<u64> {
-        self.access.as_ref().and_then(Access::session)
-    }
-    fn first_id(&mut self) -> u16 {
-        self.first_id = self.first_id.wrapping_add(IDS);
-        self.first_id
+    fn clients(&mut self) -> &mut Clients {
+        &mut self.clients
     }
 
     fn watched_by(&mut self, watch: Arc<Watch>) {

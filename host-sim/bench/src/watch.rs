@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-use truepath_core::link::Counters;
+use truepath_core::link::{Counters, Timing};
 use truepath_core::rewrite::Output;
 
 use super::injector::Injected;
@@ -34,6 +34,8 @@ pub struct RunStatus<'a> {
     pub largest_nm: i64,
     /// Time the board took for the batches.
     pub elapsed: Duration,
+    /// How regularly setpoints arrive at the board, as it says; nothing of a firmware that does not time them.
+    pub timing: Option<&'a Timing>,
     /// One answer in [`TRAIL_EVERY`] of the batch.
     pub trail: &'a [Output],
 }

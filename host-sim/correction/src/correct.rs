@@ -7,6 +7,7 @@ use truepath_core::identify::Observation;
 use truepath_core::image::{DEVICE_NODES, image_bytes};
 use truepath_core::job;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Remark;
 use truepath_ground::units::mm;
 use truepath_job::feed::Schedule;
 use truepath_job::job::Route;
@@ -61,7 +62,7 @@ pub struct CorrectedPass {
 pub fn correct_pass(
     pass: &Pass,
     measurement: &Measurement,
-    remarks: &[String],
+    remarks: &[Remark],
     routes: &[Route],
     progress: &mut dyn FnMut(f64),
 ) -> Result<CorrectedPass, Failure> {
@@ -77,7 +78,7 @@ pub struct MeasuredWall<'a> {
     /// Its points.
     pub measurement: &'a Measurement,
     /// Sentences for its summary.
-    pub remarks: &'a [String],
+    pub remarks: &'a [Remark],
 }
 
 /// Corrects the walls of one part together: one machine is identified from the points of all, and one program is written
@@ -285,7 +286,7 @@ struct Designed<'a> {
     set_aside: usize,
     probe: u32,
     part: MeasuredPart,
-    warnings: Vec<String>,
+    warnings: Vec<Remark>,
 }
 
 /// Designs the correction of a wall; the buffers take the samples of its path at scheduled feeds and in other stock.
@@ -312,16 +313,19 @@ fn design<'a>(
     let correction = design_correction(pass, &machine, &identified, &request, progress)?;
     let mut warnings = pass.warnings.clone();
     warnings.extend(remarks.texts.iter().cloned());
-    warnings.extend(model_warnings(pass, remarks.measurement, &identified, &correction, &machine));
+    let unit = pass.unit();
+    warnings.extend(
+        unit.remarks(|unit| model_warnings((pass, unit), remarks.measurement, &identified, &correction, &machine)),
+    );
     let mut sharp_corners = SharpCorners::of(pass, &path, &correction);
     if let Some(corners) = &mut sharp_corners {
         if remarks.part == MeasuredPart::Uncorrected {
             corners.with_arcs = sharp_corners::with_arcs(pass, &identified);
         }
-        warnings.push(corners.text(pass.unit()));
+        warnings.push(unit.remark(|unit| corners.text(unit)));
     }
-    warnings
-        .extend(feeds.warnings(mm(correction.sigma_by_points.iter().copied().max().unwrap_or_default()), pass.unit()));
+    let sigma_mm = mm(correction.sigma_by_points.iter().copied().max().unwrap_or_default());
+    warnings.extend(unit.remarks(|unit| feeds.warnings(sigma_mm, unit)));
     let wall = |nodes| Surface::predicted(&machine, &identified, request.beside, nodes);
     let surface = Surfaces { before: wall(&[]), after: wall(&correction.nodes) };
     warnings.extend(beyond_tolerance(pass, &remarks, &surface.after));
@@ -369,11 +373,14 @@ fn write_every(mut designed: Vec<Designed<'_>>, routes: &[Route]) -> Result<Vec<
                         let original = passes.first().map(|pass| program_crc(pass.program.bytes()));
                         let flat: Vec<&Pass> = flat.iter().collect();
                         let rewritten = written_program(&designed, &flat, &mut levels, original)?;
-                        designed.iter_mut().take(1).for_each(|one| one.warnings.push(said.clone()));
+                        designed.iter_mut().take(1).for_each(|one| one.warnings.push(said.as_str().into()));
                         rewritten
                     }
                 };
-                designed.iter_mut().take(1).for_each(|one| one.warnings.extend(kinked(&rewritten.difference)));
+                designed
+                    .iter_mut()
+                    .take(1)
+                    .for_each(|one| one.warnings.extend(kinked(&rewritten.difference).map(Remark::from)));
                 written = Some(rewritten);
             }
             Route::Coprocessor => {
@@ -399,9 +406,9 @@ impl Designed<'_> {
     /// The result, for what was written.
     fn done(self, levels: Levels, (image, other_images): Images, written: Option<&Rewritten>) -> CorrectedPass {
         let Self { pass, path, identified, correction, feeds, mut warnings, .. } = self;
-        warnings.extend(levels.left);
+        warnings.extend(levels.left.into_iter().map(Remark::from));
         if self.part == MeasuredPart::Uncorrected {
-            warnings.extend(cut_corrected(&identified, &correction, pass.unit()));
+            warnings.extend(pass.unit().remarks(|unit| cut_corrected(&identified, &correction, unit)));
         }
         let summary = CorrectSummary {
             corrected_program: written.map(|_| corrected_name(pass.program.name())),

@@ -11,6 +11,7 @@
 use truepath_core::geometry::{Block, Contour, Curve, FACET_TURN_LIMIT, Point, Shape, Side};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::hypotenuse::hypot;
 use truepath_ground::units::{float, mm, nm};
 use truepath_job::pass::Pass;
 use truepath_program::{BlockEdit, Purpose, RewriteOptions, Rewritten, rewrite_program};
@@ -225,7 +226,7 @@ impl Leg {
             return (dot(left, place), left, dot(self.heading, place));
         };
         let from = [place[0] - centre[0], place[1] - centre[1]];
-        let distance = from[0].hypot(from[1]);
+        let distance = hypot(from[0], from[1]);
         let outwards = from.map(|v| v / distance);
         let corner = centre.map(|v| -v / radius.abs());
         // Turning to the left, the path goes round its centre with the angle.
@@ -317,7 +318,7 @@ impl Arc {
 
     /// How far its middle stays away from the corner.
     fn left(&self) -> f64 {
-        self.centre[0].hypot(self.centre[1]) - self.radius
+        hypot(self.centre[0], self.centre[1]) - self.radius
     }
 
     /// The points of the half beside a leg, in the direction of travel; both end in its middle.

@@ -117,7 +117,7 @@ fn alone(pass: &Pass, half: Offset, moved: &[u32]) -> Result<(), Failure> {
         );
         let expected = format!("no other cut of the tool nearer than half of the allowance, {} mm", mm(half));
         let place = pass.program.line_span(block.line);
-        return Err(P021.error(found, expected).at(&pass.program, place).into());
+        return Err(P021.error(found, expected).told_in(pass.unit()).at(&pass.program, place).into());
     }
     Ok(())
 }
@@ -153,7 +153,7 @@ fn room(pass: &Pass, half: Offset) -> Result<(), Failure> {
     let refuse = |line: u32, found: String| {
         let expected = format!("inside arcs of more than half the allowance, {} mm", mm(half));
         let place = pass.program.line_span(line);
-        Err(P020.error(found, expected).at(&pass.program, place).into())
+        Err(P020.error(found, expected).told_in(pass.unit()).at(&pass.program, place).into())
     };
     for (index, block) in pass.blocks.iter().enumerate() {
         // Turning away from the wall is an inside corner of the part.

@@ -13,6 +13,7 @@
 //! All are standard deviations but the last, which is a largest error. Limit: clamping and temperature belong to the machine here.
 
 use truepath_core::identify::Observation;
+use truepath_ground::hypotenuse::hypot;
 use truepath_ground::length::Unit;
 use truepath_ground::units::{float, mm};
 
@@ -91,7 +92,7 @@ impl Floor {
 
     /// Of the mean over the height, one standard deviation, mm.
     pub fn mm(&self) -> f64 {
-        self.machine_mm.hypot(self.probe_mm).hypot(self.drift_mm)
+        hypot(hypot(self.machine_mm, self.probe_mm), self.drift_mm)
     }
 
     /// Of several contours: the highest, with what is left over the height of any.
@@ -118,7 +119,7 @@ impl Floor {
     /// What the next part will be, and what the machine repeats to, in a line.
     pub fn line(&self, unit: Unit, after: &Surface) -> String {
         // The drift is part of the predicted deviation.
-        let sigma = after.mean_sigma_mm.hypot(self.machine_mm).hypot(self.probe_mm);
+        let sigma = hypot(hypot(after.mean_sigma_mm, self.machine_mm), self.probe_mm);
         let machine = match self.machine_from {
             KnownFrom::Job | KnownFrom::Parts => "your machine repeats",
             KnownFrom::Prior => "machines repeat",

@@ -5,6 +5,7 @@ use truepath_core::cut::Path;
 use truepath_core::identify::Observation;
 use truepath_core::job::LawName;
 use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::length::Remark;
 use truepath_job::job::Route;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
@@ -64,7 +65,7 @@ pub struct ContourLearned {
 impl LearnSummary {
     /// Of several contours: the verdict is that of the one that came out worst, the figures of the next correction are those
     /// of the worst. `None` without any.
-    pub fn of_every(contours: Vec<ContourLearned>, warnings: Vec<String>) -> Option<Self> {
+    pub fn of_every(contours: Vec<ContourLearned>, warnings: Vec<Remark>) -> Option<Self> {
         let error = |one: &ContourLearned| one.summary.whole_contour_error_mm.max_mm;
         let worst = contours.iter().max_by(|a, b| error(a).total_cmp(&error(b)))?.summary.clone();
         let corrected = contours.iter().map(|one| ContourSummary {
@@ -88,7 +89,7 @@ pub struct CorrectedWall<'a> {
     /// Its points.
     pub measurement: &'a Measurement,
     /// Sentences for its summary.
-    pub remarks: &'a [String],
+    pub remarks: &'a [Remark],
 }
 
 /// Learns from the part that was cut with the history's correction, in memory, for one or both routes.
@@ -99,7 +100,7 @@ pub fn learn(
     pass: &Pass,
     history: &History,
     measurement: &Measurement,
-    remarks: &[String],
+    remarks: &[Remark],
     routes: &[Route],
     progress: &mut dyn FnMut(f64),
 ) -> Result<Learned, Failure> {
@@ -150,7 +151,8 @@ pub fn learn_every(
         let mut texts = wall.remarks.to_vec();
         texts.extend_from_slice(update.verdict.remarks());
         if let Some(oldest) = wall.history.parts.first().filter(|_| wall.history.parts.len() >= MOST_PARTS) {
-            texts.push(format!("part {} is dropped from the history, which keeps {MOST_PARTS} parts", oldest.number));
+            let said = format!("part {} is dropped from the history, which keeps {MOST_PARTS} parts", oldest.number);
+            texts.push(said.into());
         }
         taught.push((update, texts));
     }

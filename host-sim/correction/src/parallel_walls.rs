@@ -13,8 +13,10 @@ use std::cell::RefCell;
 
 use rayon::prelude::*;
 use rayon::{current_num_threads, join};
-use truepath_core::correct::{Band, HEIGHTS, Profile, WallReader, begin, finish, read_slice};
-use truepath_core::cut::{Displacements, Envelope, Heights, Kept, Loop, Passage, Path, State, WallError};
+use truepath_core::correct::{Band, HEIGHTS, Profile, Scratch, WallReader, begin, finish, read_slice};
+use truepath_core::cut::{
+    Displacements, Envelope, Heights, Kept, Loop, Passage, Path, State, WallError, left_by, lowest_about,
+};
 use truepath_core::geometry::Vector;
 use truepath_core::units::{Offset, Real};
 
@@ -76,6 +78,11 @@ impl WallReader for ParallelWalls {
         }
         finish(machine, &rows[tip], profiles);
     }
+
+    fn each(&mut self, slots: &mut [Scratch], length: usize, work: impl Fn(usize, &mut [Scratch]) + Sync) {
+        let length = length.max(1);
+        slots.par_chunks_mut(length).enumerate().for_each(|(k, piece)| work(k * length, piece));
+    }
 }
 
 /// The cutter's displacements at heights of the engaged depth, one row each, of several stretches at a time.
@@ -133,16 +140,16 @@ fn stretch_by_stretch(
     all
 }
 
-/// The wall errors that states of a run over the working samples of a path leave beside places, which are samples of it, at heights of
+/// The walls that states of a run over the working samples of a path leave beside places, which are samples of it, at heights of
 /// the engaged depth; `None` where no wall stands.
 pub fn walls_at<const N: usize>(
     machine: &Loop,
     states: &[State],
     heights: [Real; N],
     places: &[usize],
-) -> Vec<[Option<Offset>; N]> {
-    if are_few(states, places) {
-        return walls_at_few(machine, states.len(), |slot| states.get(slot).copied(), heights, places);
+) -> Vec<[Option<WallError>; N]> {
+    if places.len() * FEW <= states.len() {
+        return walls_at_few(machine, states, heights, places);
     }
     let mut displacements: [Vec<Vector>; N] = std::array::from_fn(|_| vec![Vector::ZERO; states.len()]);
     displace(machine, states, heights, displacements.each_mut().map(Vec::as_mut_slice));
@@ -152,48 +159,19 @@ pub fn walls_at<const N: usize>(
         let mut wall = |place: usize| beside(machine, place, &mut ahead, |guess| envelope.error(place, guess));
         places.iter().map(|place| wall(*place)).collect::<Vec<_>>()
     };
-    let rows: Vec<Vec<Option<Offset>>> = displacements.par_iter().map(row).collect();
+    let rows: Vec<Vec<Option<WallError>>> = displacements.par_iter().map(row).collect();
     (0..places.len()).map(|at| std::array::from_fn(|height| rows[height][at])).collect()
 }
 
-/// The same of a machine that differs little from one with known states and cuts with the same commands. Where the places are few each
-/// state that makes a wall is found by itself, from the known one: within the tolerance of the elastic loop, some nanometres, that of a
-/// run from start to end.
-pub(crate) fn walls_near<const N: usize>(
-    machine: &Loop,
-    known: &[State],
-    heights: [Real; N],
-    places: &[usize],
-) -> Vec<[Option<Offset>; N]> {
-    let start = machine.path.working().start;
-    if are_few(known, places) {
-        let mut kept = Kept::default();
-        let state = |slot: usize| {
-            let State { commanded, displacement, .. } = *known.get(slot)?;
-            machine.state(&mut kept, start + slot, commanded, displacement).map(|(state, _)| state)
-        };
-        return walls_at_few(machine, known.len(), state, heights, places);
-    }
-    let mut states = vec![State::REST; known.len()];
-    run(machine, start, &mut states, &|index| known.get(index - start).map_or(Vector::ZERO, |state| state.commanded));
-    walls_at(machine, &states, heights, places)
-}
-
-fn are_few(states: &[State], places: &[usize]) -> bool {
-    places.len() * FEW <= states.len()
-}
-
-/// From states that are asked for one by one, counted from the first of so many.
+/// The same of few places: the cutter is found where one of them asks for it.
 fn walls_at_few<const N: usize>(
     machine: &Loop,
-    states: usize,
-    state: impl FnMut(usize) -> Option<State>,
+    states: &[State],
     heights: [Real; N],
     places: &[usize],
-) -> Vec<[Option<Offset>; N]> {
+) -> Vec<[Option<WallError>; N]> {
     let (path, start) = (machine.path, machine.path.working().start);
-    let heights = Heights::new(machine, heights);
-    let sought = RefCell::new(Sought { machine, state, heights, slots: vec![0; states], known: Vec::new() });
+    let sought = RefCell::new(Sought::of(machine, states.len(), heights, |slot| states.get(slot).copied()));
     let mut envelopes: [_; N] =
         std::array::from_fn(|height| (Envelope::of(path, start, AtHeight { of: &sought, height }), 0));
     let mut each = |place: usize| {
@@ -202,26 +180,117 @@ fn walls_at_few<const N: usize>(
     places.iter().map(|place| each(*place)).collect()
 }
 
-/// The wall error beside a place, made about as far before or behind it as that beside the place before.
+/// The wall beside a place, made about as far before or behind it as that beside the place before.
 fn beside(
     machine: &Loop,
     place: usize,
     ahead: &mut isize,
-    error: impl FnOnce(usize) -> Option<WallError>,
-) -> Option<Offset> {
-    let wall = error(place.saturating_add_signed(*ahead))?;
+    wall: impl FnOnce(usize) -> Option<WallError>,
+) -> Option<WallError> {
+    let wall = wall(place.saturating_add_signed(*ahead))?;
     *ahead = wall.made_by as isize - place as isize;
-    Some(wall.error + machine.undersize)
+    Some(WallError { error: wall.error + machine.undersize, ..wall })
 }
 
-/// Displacements at all heights of the samples that were asked for.
+/// Walls beside places at heights of the engaged depth, with the cutter positions that made them, to say how other machines would move
+/// them.
+pub(crate) struct CutWalls<'a, const N: usize> {
+    machine: &'a Loop<'a>,
+    /// States over the working samples of the path.
+    states: &'a [State],
+    heights: [Real; N],
+    places: Vec<usize>,
+    /// For every place and height the sample about which the wall is made, and how far the cutter ends short of it.
+    made: Vec<[Option<(usize, Offset)>; N]>,
+}
+
+impl<'a, const N: usize> CutWalls<'a, N> {
+    /// Of a machine with its states and some of its walls.
+    pub(crate) fn of(
+        (machine, states): (&'a Loop<'a>, &'a [State]),
+        heights: [Real; N],
+        walls: impl Iterator<Item = (usize, [Option<WallError>; N])>,
+    ) -> Self {
+        let mut sought = Sought::of(machine, states.len(), heights, |slot| states.get(slot).copied());
+        let (places, made) = walls
+            .map(|(place, column)| {
+                let made = std::array::from_fn(|height| {
+                    let maker = column[height]?.made_by;
+                    Some((maker, sought.made(place, maker, height)?))
+                });
+                (place, made)
+            })
+            .unzip();
+        Self { machine, states, heights, places, made }
+    }
+
+    /// How another machine, which cuts with the same commands, moves the walls: as it moves the cutter positions that made them, each
+    /// found from that of this machine. That another position may make them then is of second order. Zero where no wall stands.
+    pub(crate) fn moved_by(&self, other: &Loop) -> Vec<[Offset; N]> {
+        let Self { machine, states, heights, .. } = *self;
+        let start = machine.path.working().start;
+        let mut kept = Kept::default();
+        let state = |slot: usize| {
+            let State { commanded, displacement, .. } = *states.get(slot)?;
+            other.state(&mut kept, start + slot, commanded, displacement).map(|(state, _)| state)
+        };
+        let mut sought = Sought::of(other, states.len(), heights, state);
+        let smaller = other.undersize - machine.undersize;
+        let mut moved = |place: usize, height: usize, (maker, before): (usize, Offset)| {
+            Some(sought.made(place, maker, height)? - before + smaller)
+        };
+        let each = |(place, column): (&usize, &[Option<(usize, Offset)>; N])| {
+            std::array::from_fn(|height| {
+                column[height].and_then(|made| moved(*place, height, made)).unwrap_or_default()
+            })
+        };
+        self.places.iter().zip(&self.made).map(each).collect()
+    }
+}
+
+/// Displacements of a machine at all heights of the samples that were asked for.
 struct Sought<'a, S, const N: usize> {
     machine: &'a Loop<'a>,
+    /// The first sample.
+    start: usize,
     state: S,
     heights: Heights<N>,
     /// Where they are among the known ones, for every sample, counted from 1; 0 for nowhere.
     slots: Vec<u32>,
     known: Vec<[Vector; N]>,
+}
+
+impl<'a, S: FnMut(usize) -> Option<State>, const N: usize> Sought<'a, S, N> {
+    /// From states that are asked for one by one, counted from the first of so many.
+    fn of(machine: &'a Loop<'a>, states: usize, heights: [Real; N], state: S) -> Self {
+        let start = machine.path.working().start;
+        Self {
+            machine,
+            start,
+            state,
+            heights: Heights::new(machine, heights),
+            slots: vec![0; states],
+            known: Vec::new(),
+        }
+    }
+
+    fn displacement(&mut self, slot: usize, height: usize) -> Option<Vector> {
+        let at = self.slots.get_mut(slot)?;
+        if *at == 0 {
+            self.known.push(self.machine.at_heights(&mut self.heights, &(self.state)(slot)?));
+            *at = self.known.len() as u32;
+        }
+        self.known.get(*at as usize - 1)?.get(height).copied()
+    }
+
+    /// How far the cutter ends short of the wall beside a place at a height where it makes that about a sample.
+    fn made(&mut self, place: usize, maker: usize, height: usize) -> Option<Offset> {
+        let (path, start) = (self.machine.path, self.start);
+        let mut gap =
+            |sample: usize| left_by(path, place, sample, self.displacement(sample.checked_sub(start)?, height)?);
+        let own = gap(maker)?;
+        Some(lowest_about(maker, own, gap))
+    }
 }
 
 /// Those of one height.
@@ -232,14 +301,7 @@ struct AtHeight<'s, 'a, S, const N: usize> {
 
 impl<S: FnMut(usize) -> Option<State>, const N: usize> Displacements for AtHeight<'_, '_, S, N> {
     fn displacement(&mut self, slot: usize) -> Option<Vector> {
-        let mut sought = self.of.borrow_mut();
-        let Sought { machine, state, heights, slots, known } = &mut *sought;
-        let at = slots.get_mut(slot)?;
-        if *at == 0 {
-            known.push(machine.at_heights(heights, &state(slot)?));
-            *at = known.len() as u32;
-        }
-        known.get(*at as usize - 1)?.get(self.height).copied()
+        self.of.borrow_mut().displacement(slot, self.height)
     }
 }
 

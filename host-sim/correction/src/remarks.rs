@@ -1,5 +1,6 @@
 //! What is to be said of a measurement in the summary of a correction.
 
+use truepath_ground::length::Remark;
 use truepath_job::measurement::Measurement;
 
 /// The part that was measured.
@@ -19,7 +20,7 @@ pub struct Remarks<'a> {
     /// Readings set aside.
     pub set_aside: usize,
     /// Sentences for the summary.
-    pub texts: &'a [String],
+    pub texts: &'a [Remark],
     /// CRC-32 of the probe file.
     pub probe: u32,
     /// The measurement.
@@ -30,21 +31,21 @@ pub struct Remarks<'a> {
 
 impl<'a> Remarks<'a> {
     /// Of the measurement of a part, with sentences about it.
-    pub const fn of(measurement: &'a Measurement, texts: &'a [String], part: MeasuredPart) -> Self {
+    pub const fn of(measurement: &'a Measurement, texts: &'a [Remark], part: MeasuredPart) -> Self {
         Self { set_aside: measurement.rejected.len(), texts, probe: measurement.crc, measurement, part }
     }
 }
 
 /// What is said of several contours, each with its name: what is said of the program, or of several of them in the same words,
 /// is said once and without a name.
-pub fn said_of_every<'a>(contours: impl IntoIterator<Item = (&'a str, &'a [String])>) -> Vec<String> {
-    let contours: Vec<(&str, &[String])> = contours.into_iter().collect();
-    let mut said: Vec<String> = Vec::new();
+pub fn said_of_every<'a>(contours: impl IntoIterator<Item = (&'a str, &'a [Remark])>) -> Vec<Remark> {
+    let contours: Vec<(&str, &[Remark])> = contours.into_iter().collect();
+    let mut said: Vec<Remark> = Vec::new();
     for (at, (name, own)) in contours.iter().enumerate() {
         for text in *own {
             let others = contours.iter().enumerate().filter(|(other, _)| *other != at);
             let is_common = others.into_iter().any(|(_, (_, theirs))| theirs.contains(text));
-            let text = if is_common { text.clone() } else { format!("{name}: {text}") };
+            let text = if is_common { text.clone() } else { text.map(|text| format!("{name}: {text}")) };
             if !said.contains(&text) {
                 said.push(text);
             }
@@ -55,12 +56,15 @@ pub fn said_of_every<'a>(contours: impl IntoIterator<Item = (&'a str, &'a [Strin
 
 #[cfg(test)]
 mod tests {
-    use super::said_of_every;
+    use super::{Remark, said_of_every};
 
     #[test]
     fn what_several_contours_say_is_said_once() {
-        let [a, b] = [["no %", "a wild point"], ["no %", "a sharp corner"]].map(|said| said.map(str::to_owned));
+        let [a, b] = [["no %", "a wild point"], ["no %", "a sharp corner"]].map(|said| said.map(Remark::from));
         let said = said_of_every([("contour-1", &a[..]), ("contour-2", &b[..])]);
-        assert_eq!(said, ["no %", "contour-1: a wild point", "contour-2: a sharp corner"]);
+        assert_eq!(
+            said.iter().map(|said| &**said).collect::<Vec<_>>(),
+            ["no %", "contour-1: a wild point", "contour-2: a sharp corner"]
+        );
     }
 }

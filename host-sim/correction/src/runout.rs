@@ -143,7 +143,8 @@ pub fn passes(walls: &[&Pass], groups: &[(&Pass, Vec<PartCut<'_>>)]) -> (Vec<Pas
     let mut fits = Vec::new();
     match found(groups, &mut fits) {
         Some(found) => {
-            (walls.iter().map(|pass| pass.running_out(found.offset, found.words(pass.unit()))).collect(), Vec::new())
+            let said = |pass: &Pass| pass.unit().remark(|unit| found.words(unit));
+            (walls.iter().map(|pass| pass.running_out(found.offset, said(pass))).collect(), Vec::new())
         }
         None => (walls.iter().map(|pass| (*pass).clone()).collect(), fits),
     }

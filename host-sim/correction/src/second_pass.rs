@@ -11,6 +11,7 @@ use truepath_core::gcode::program_crc;
 use truepath_core::geometry::Vector;
 use truepath_core::job::{self, LawName};
 use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::length::Remark;
 use truepath_ground::units::{float, mm};
 use truepath_job::job::Route;
 use truepath_job::measurement::Measurement;
@@ -31,7 +32,7 @@ pub fn correct_second_pass(
     second: &Pass,
     first: &Pass,
     measurement: &Measurement,
-    remarks: &[String],
+    remarks: &[Remark],
     routes: &[Route],
     progress: &mut dyn FnMut(f64),
 ) -> Result<(CorrectedPass, Surface), Failure> {

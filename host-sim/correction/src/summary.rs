@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use truepath_core::cut::{Path, WallLaw};
 use truepath_core::identify;
 use truepath_core::units::{Offset, Real};
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Remark, Unit};
 use truepath_ground::units::{float, mm};
 use truepath_job::feature::FeatureSummary;
 use truepath_job::feed::{FeedSummary, Unscheduled};
@@ -127,7 +127,8 @@ pub struct CorrectSummary {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub assumed: Vec<Assumed>,
     /// What the user should know.
-    pub warnings: Vec<String>,
+    #[schemars(with = "Vec<String>")]
+    pub warnings: Vec<Remark>,
     /// Each of several contours that were corrected together, of which the rest is the worst or the sum; absent for one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub contours: Vec<ContourSummary>,
@@ -149,7 +150,7 @@ pub struct ContourSummary {
 
 impl CorrectSummary {
     /// Of several contours that were corrected together: errors are those of the worst, counts are sums.
-    pub fn of_every(contours: Vec<ContourSummary>, warnings: Vec<String>) -> Option<Self> {
+    pub fn of_every(contours: Vec<ContourSummary>, warnings: Vec<Remark>) -> Option<Self> {
         let all: Vec<&Self> = contours.iter().filter_map(|contour| contour.summary.as_ref()).collect();
         let worst = *all.iter().max_by(|a, b| a.max_error_after_mm.total_cmp(&b.max_error_after_mm))?;
         let largest = |of: fn(&Self) -> f64| all.iter().map(|one| of(one)).fold(0.0, f64::max);
@@ -192,7 +193,7 @@ impl CorrectSummary {
 
     /// `difference.txt`, for a program of this name; empty when no program was written.
     pub fn difference(&self, original: &str) -> String {
-        let program = self.program.as_ref().map(|difference| difference.text(original));
+        let program = self.program.as_ref().map(|difference| difference.text(original, self.unit));
         let feed = self.feed.as_ref().map(FeedSummary::text);
         program.map_or_else(String::new, |text| text + &feed.unwrap_or_default())
     }
@@ -235,7 +236,7 @@ pub fn correct_summary(
     correction: &Correction,
     surface: Surfaces,
     rejected: usize,
-    warnings: Vec<String>,
+    warnings: Vec<Remark>,
 ) -> CorrectSummary {
     let target = correction.wanted.target;
     let observations = &identified.observations;

@@ -4,7 +4,7 @@ use truepath_core::cut::Loop;
 use truepath_core::identify::Parameter;
 use truepath_core::probe::Contact;
 use truepath_core::units::Offset;
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Remark, Unit};
 use truepath_ground::units::{float, mm};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
@@ -17,15 +17,15 @@ use crate::misfit::said;
 use crate::remarks::{MeasuredPart, Remarks};
 use crate::surface::expected::Surface;
 
-/// What the user should doubt.
+/// What the user should doubt, said in a unit.
 pub fn model_warnings(
-    pass: &Pass,
+    (pass, unit): (&Pass, Unit),
     measurement: &Measurement,
     identified: &Identification,
     correction: &Correction,
     machine: &Loop,
 ) -> Vec<String> {
-    let (unit, name) = (pass.unit(), pass.unit().name());
+    let name = unit.name();
     let mut out = Vec::new();
     if identified.outlying() > 0 {
         let lines: Vec<String> = identified
@@ -108,7 +108,7 @@ pub fn model_warnings(
             unit.of(mm(sigma))
         ));
     }
-    if let Some(reversal) = reversal(pass, machine, correction) {
+    if let Some(reversal) = reversal((pass, unit), machine, correction) {
         out.push(reversal);
     }
     out
@@ -144,19 +144,18 @@ const fn cause(parameter: Parameter) -> &'static str {
 }
 
 /// What to say of a wall that one pass cannot hold within the tolerance at every height: what leaves it, and what to type.
-pub fn beyond_tolerance(pass: &Pass, remarks: &Remarks, after: &Surface) -> Option<String> {
+pub fn beyond_tolerance(pass: &Pass, remarks: &Remarks, after: &Surface) -> Option<Remark> {
     let tolerance = pass.job.part.tolerance?;
     let half = mm(tolerance.upper).min(-mm(tolerance.lower));
     let (expected, twice_sigma) = (after.profile.profile_mm, 2.0 * after.profile.sigma_mm);
     if half <= 0.0 || expected + twice_sigma <= half {
         return None;
     }
-    let (unit, name) = (pass.unit(), pass.unit().name());
     let verb = if expected > half { "cannot hold" } else { "may not hold" };
     let feature = pass.job.which.feature.as_ref().map_or_else(String::new, |id| format!(" --feature {id}"));
     let plan = |probe: &str| {
         let job = pass.job.source().name();
-        format!("truepath plan {job} --probe {probe} --tolerance {}{feature}", unit.typed(half))
+        format!("truepath plan {job} --probe {probe} --tolerance {}{feature}", pass.unit().typed(half))
     };
     let next = match remarks.part {
         MeasuredPart::Uncorrected => {
@@ -169,15 +168,18 @@ pub fn beyond_tolerance(pass: &Pass, remarks: &Remarks, after: &Surface) -> Opti
             "a part that is made in one piece with more passes would be planned with truepath plan".to_owned()
         }
     };
-    Some(format!(
-        "one corrected pass {verb} {} {name} at every height of the wall: {:.4} ± {:.4} {name} (2 sigma) are expected at the worst place, s = {:.1} {name}, {:.1} {name} above the tip, most of it {}; {next}",
-        unit.of(half),
-        unit.of(expected),
-        unit.of(twice_sigma),
-        unit.of(after.s_mm),
-        unit.of(after.height_mm),
-        after.causes.largest()
-    ))
+    Some(pass.unit().remark(|unit| {
+        let name = unit.name();
+        format!(
+            "one corrected pass {verb} {} {name} at every height of the wall: {:.4} ± {:.4} {name} (2 sigma) are expected at the worst place, s = {:.1} {name}, {:.1} {name} above the tip, most of it {}; {next}",
+            unit.of(half),
+            unit.of(expected),
+            unit.of(twice_sigma),
+            unit.of(after.s_mm),
+            unit.of(after.height_mm),
+            after.causes.largest()
+        )
+    }))
 }
 
 /// A correction that a part was cut with takes off nearly the same everywhere: the fit finds a cutter that is too large.
@@ -198,15 +200,16 @@ pub fn cut_corrected(identified: &Identification, correction: &Correction, unit:
 }
 
 /// What the points of a pass may be of instead: a wall milled twice, or the first of two passes.
-pub fn misread(measured: &Pass, first_pass: bool, contacts: &[Contact]) -> Vec<String> {
+pub fn misread(measured: &Pass, first_pass: bool, contacts: &[Contact]) -> Vec<Remark> {
     let mut out = Vec::new();
     let passes = || measured.plan.iter().flat_map(|plan| &plan.passes);
     let height = passes().find(|p| !p.spring && p.number == measured.level()).and_then(|p| p.z);
     if let Some(spring) = passes().find(|p| p.spring && p.z == height) {
-        out.push(format!(
+        let said = format!(
             "the spring pass of lines {}-{} goes over the probed wall: the points must have been touched before it. A wall milled twice shows too little of the force, and too little would be corrected",
             spring.lines.first, spring.lines.last
-        ));
+        );
+        out.push(said.into());
     }
     let allowance = measured.core.setup.allowance;
     let mut errors: Vec<Offset> = contacts.iter().map(|contact| contact.error).collect();
@@ -217,13 +220,15 @@ pub fn misread(measured: &Pass, first_pass: bool, contacts: &[Contact]) -> Vec<S
         && allowance > Offset::from_um(100)
         && median.nm() * 5 > allowance.nm() * 2
     {
-        out.push(format!(
-            "the wall stands {:.3} {} off its place, {:.0} % of allowance_mm = {}: if that is the stock a first pass left, give --first-pass with its job; otherwise look at the probe and the origin",
-            measured.unit().of(mm(median)),
-            measured.unit().name(),
-            100.0 * mm(median) / mm(allowance),
-            mm(allowance)
-        ));
+        out.push(measured.unit().remark(|unit| {
+            format!(
+                "the wall stands {:.3} {} off its place, {:.0} % of allowance_mm = {}: if that is the stock a first pass left, give --first-pass with its job; otherwise look at the probe and the origin",
+                unit.of(mm(median)),
+                unit.name(),
+                100.0 * mm(median) / mm(allowance),
+                mm(allowance)
+            )
+        }));
     }
     out
 }
@@ -244,7 +249,7 @@ pub fn kinked(difference: &Difference) -> Option<String> {
 }
 
 /// Where the correction reverses an axis that the program does not reverse, backlash acts.
-fn reversal(pass: &Pass, machine: &Loop, correction: &Correction) -> Option<String> {
+fn reversal((pass, unit): (&Pass, Unit), machine: &Loop, correction: &Correction) -> Option<String> {
     let path = machine.path;
     let samples = &path.samples()[path.first()..path.first() + path.count()];
     for axis in 0..2 {
@@ -259,10 +264,10 @@ fn reversal(pass: &Pass, machine: &Loop, correction: &Correction) -> Option<Stri
             if n.abs() > 1_000 && (n + c).signum() == -n.signum() {
                 return Some(format!(
                     "near s = {:.2} {} the correction reverses {} against the program: its backlash of {} {1} acts there",
-                    pass.unit().of(mm(pair[0].s)),
-                    pass.unit().name(),
+                    unit.of(mm(pair[0].s)),
+                    unit.name(),
                     ["X", "Y"][axis],
-                    pass.unit().of(mm(backlash))
+                    unit.of(mm(backlash))
                 ));
             }
         }

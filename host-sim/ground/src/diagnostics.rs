@@ -19,6 +19,7 @@ use truepath_core::gcode::GcodeError;
 
 use crate::codes::{C001, F001, F002, Row, X001};
 use crate::files;
+use crate::length::Unit;
 
 pub use source::Source;
 pub use visible::{visible, visible_lines};
@@ -113,6 +114,20 @@ impl InputError {
         }
         self
     }
+    /// The same with its lengths, which are in millimetres (`25.4 mm`), in a unit.
+    #[must_use]
+    pub fn told_in(mut self, unit: Unit) -> Self {
+        let Body { found, expected, help, .. } = &mut *self.0;
+        [found, expected, help].into_iter().for_each(|text| *text = unit.retold(text).into_owned());
+        self
+    }
+    /// The same with the names of keys, which are in millimetres (`tool.diameter_mm`), as a file in a unit has them.
+    #[must_use]
+    pub fn with_keys_in(mut self, unit: Unit) -> Self {
+        let Body { found, expected, help, .. } = &mut *self.0;
+        [found, expected, help].into_iter().for_each(|text| *text = unit.keys(text).into_owned());
+        self
+    }
     /// The same as a refusal by judgement: every file could be read, together they do not do.
     #[must_use]
     pub fn by_judgement(mut self) -> Self {
@@ -143,12 +158,13 @@ impl InputError {
     pub fn code(&self) -> &str {
         &self.0.code
     }
-    /// An error of a program, with the place the core names.
+    /// An error of a program, with the place the core names, in the unit that holds there.
     pub fn of_program(source: &Source, error: &GcodeError) -> Self {
         let sentence = error.kind.to_string();
         let (found, help) = sentence.split_once("; ").unwrap_or((&sentence, "correct the program"));
         let span = error.span();
-        Self::of_core(error.kind.code(), found, "", help).at(source, span.start..span.end())
+        let unit = Unit::at(source.bytes(), span.start);
+        Self::of_core(error.kind.code(), found, "", help).told_in(unit).at(source, span.start..span.end())
     }
     /// Line and column, both from 1, when the error has a place.
     pub fn line_column(&self) -> Option<(usize, usize)> {

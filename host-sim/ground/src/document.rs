@@ -15,6 +15,7 @@ use super::decimal::Decimal;
 use super::limits::Limits;
 use crate::codes::{J003, J004, J005, J006, J007, J008};
 use crate::diagnostics::{InputError, Source};
+use crate::length::{Unit, in_inches, in_millimetres};
 
 /// Where the value of a key stands; keys are written with their table, `tool.diameter_mm`.
 pub type Spans = BTreeMap<String, Range<usize>>;
@@ -76,6 +77,7 @@ pub struct Section<'d> {
     table: &'d DeTable<'d>,
     asked: RefCell<Vec<&'static str>>,
     spans: &'d RefCell<Spans>,
+    unit: Unit,
 }
 
 /// A value with its place.
@@ -95,29 +97,34 @@ impl Value<'_> {
     pub fn mm(&self, number: Decimal) -> Decimal {
         if self.inches { number.of_inches() } else { number }
     }
+    /// The unit that its key says.
+    pub const fn unit(&self) -> Unit {
+        if self.inches { Unit::Inch } else { Unit::Millimetre }
+    }
 }
 
-/// The key of a length in inches for one in millimetres: `allowance_in` beside `allowance_mm`, `feed_in_per_min`. `None` for what is no
-/// length alone, as a force per millimetre.
-pub fn in_inches(key: &str) -> Option<String> {
-    other_unit(key, "_mm", "_in")
-}
-
-/// The key in millimetres of one in inches: the other way.
-pub fn in_millimetres(key: &str) -> Option<String> {
-    other_unit(key, "_in", "_mm")
-}
-
-fn other_unit(key: &str, unit: &str, other: &str) -> Option<String> {
-    let at = key.rfind(unit).filter(|&at| !key[..at].ends_with("_per"))?;
-    let behind = &key[at + unit.len()..];
-    matches!(behind, "" | "_per_min" | "_per_tooth" | "_per_s").then(|| format!("{}{other}{behind}", &key[..at]))
+/// The unit of a file: inches where the key of any length says so.
+fn unit_of(table: &DeTable<'_>) -> Unit {
+    let is_inch = |key: &str, value: &DeValue<'_>| match value {
+        DeValue::Table(table) => unit_of(table) == Unit::Inch,
+        DeValue::Array(list) => {
+            list.iter().filter_map(|entry| entry.get_ref().as_table()).any(|table| unit_of(table) == Unit::Inch)
+        }
+        _ => in_millimetres(key).is_some(),
+    };
+    if table.iter().any(|(key, value)| is_inch(key.get_ref(), value.get_ref())) { Unit::Inch } else { Unit::Millimetre }
 }
 
 impl<'d> Section<'d> {
     /// The table outside of any other; the places of its values go to `spans`.
     pub fn root(source: &'d Source, table: &'d Spanned<DeTable<'d>>, spans: &'d RefCell<Spans>) -> Self {
-        Self { source, name: "", span: 0..0, table: table.get_ref(), asked: RefCell::default(), spans }
+        let unit = unit_of(table.get_ref());
+        Self { source, name: "", span: 0..0, table: table.get_ref(), asked: RefCell::default(), spans, unit }
+    }
+
+    /// The unit of the file's lengths; a file that has them in both is in inches.
+    pub const fn unit(&self) -> Unit {
+        self.unit
     }
 
     fn path(&self, key: &str) -> String {
@@ -153,6 +160,7 @@ impl<'d> Section<'d> {
             table,
             asked: RefCell::default(),
             spans: self.spans,
+            unit: self.unit,
         }))
     }
 
@@ -171,16 +179,16 @@ impl<'d> Section<'d> {
             let Some(table) = entry.get_ref().as_table() else {
                 return Err(self.wrong_type(&value, "a list of tables", &help));
             };
-            let (source, spans) = (self.source, self.spans);
-            Ok(Section { source, name, span: entry.span(), table, asked: RefCell::default(), spans })
+            let Section { source, spans, unit, .. } = *self;
+            Ok(Section { source, name, span: entry.span(), table, asked: RefCell::default(), spans, unit })
         };
         list.iter().map(table).collect()
     }
 
     /// A sub-table that the file does not have, with other contents: `table`.
     pub fn section_of(&self, key: &'static str, table: &'d DeTable<'d>) -> Section<'d> {
-        let (source, spans) = (self.source, self.spans);
-        Section { source, name: key, span: self.end(), table, asked: RefCell::default(), spans }
+        let Section { source, spans, unit, .. } = *self;
+        Section { source, name: key, span: self.end(), table, asked: RefCell::default(), spans, unit }
     }
 
     /// The error of a sub-table that must be there; `needs` lists what belongs in it.
@@ -207,36 +215,35 @@ impl<'d> Section<'d> {
 
     /// A number within limits that must be there.
     pub fn required_number(&self, key: &'static str, limits: Limits) -> Result<Decimal, InputError> {
-        self.number(key, limits)?.ok_or_else(|| self.missing(key, &format!("a number, {}", limits.phrase())))
+        self.number(key, limits)?
+            .ok_or_else(|| self.missing(key, &format!("a number, {}", limits.phrase_in(self.unit))))
     }
 
     /// The number a value holds.
     pub fn number_in(&self, value: &Value<'_>, limits: Limits) -> Result<Decimal, InputError> {
         note(|| value.path.clone(), || Kind::Number(limits.phrase()));
+        let limits_in_words = limits.phrase_in(value.unit());
         let text = match value.raw {
             DeValue::Integer(i) if i.radix() == 10 => i.as_str().to_owned(),
             DeValue::Float(f) => f.as_str().to_owned(),
             _ => {
                 let help =
                     if value.raw.is_str() { "remove the quotation marks" } else { "write a plain decimal number" };
-                return Err(self.wrong_type(value, &format!("a number, {}", limits.phrase()), help));
+                return Err(self.wrong_type(value, &format!("a number, {limits_in_words}"), help));
             }
         };
-        let number = Decimal::parse(&text).map(|n| value.mm(n));
-        match number {
-            Some(n) if limits.admits(n) => Ok(n),
-            Some(n) if value.inches => {
-                let found = format!("{} is {text}, which is {} mm", value.path, n.as_f64());
-                let help = "check the value and its unit: the key's name carries it";
-                Err(InputError::new(J006, found, limits.phrase(), help).at(self.source, value.span.clone()))
+        match Decimal::parse(&text).map(|n| (n, value.mm(n))) {
+            Some((_, n)) if limits.admits(n) => Ok(n),
+            Some((number, _)) => {
+                let help = match in_millimetres(&value.path).filter(|_| value.inches && limits.admits(number)) {
+                    Some(key) => format!("check the value; if it is in millimetres, write {} = {text}", own_name(&key)),
+                    None => "check the value and its unit: the key's name carries it".to_owned(),
+                };
+                let found = format!("{} is {text}", value.path);
+                Err(InputError::new(J006, found, limits_in_words, help).at(self.source, value.span.clone()))
             }
-            Some(_) => Err(self.out_of_range(
-                value,
-                &limits.phrase(),
-                "check the value and its unit: the key's name carries it",
-            )),
             None => {
-                Err(self.out_of_range(value, &limits.phrase(), "write a plain decimal number with at most 36 digits"))
+                Err(self.out_of_range(value, &limits_in_words, "write a plain decimal number with at most 36 digits"))
             }
         }
     }
@@ -286,12 +293,18 @@ impl<'d> Section<'d> {
     /// An error at a value that is well formed but not allowed.
     pub fn out_of_range(&self, value: &Value<'_>, expected: &str, help: &str) -> InputError {
         let found = format!("{} is {}", value.path, self.source.excerpt(value.span.clone()));
-        InputError::new(J006, found, expected, help).at(self.source, value.span.clone())
+        InputError::new(J006, found, expected, help)
+            .told_in(value.unit())
+            .with_keys_in(value.unit())
+            .at(self.source, value.span.clone())
     }
 
     /// An error at a value that another one excludes.
     pub fn contradiction(&self, value: &Value<'_>, found: &str, expected: &str, help: &str) -> InputError {
-        InputError::new(J008, found, expected, help).at(self.source, value.span.clone())
+        InputError::new(J008, found, expected, help)
+            .told_in(value.unit())
+            .with_keys_in(value.unit())
+            .at(self.source, value.span.clone())
     }
 
     /// An error at a value of the wrong type.
@@ -303,6 +316,8 @@ impl<'d> Section<'d> {
             kind => format!("a {kind}"),
         };
         InputError::new(J005, format!("{} is {article}", value.path), expected, help)
+            .told_in(value.unit())
+            .with_keys_in(value.unit())
             .at(self.source, value.span.clone())
     }
 
@@ -328,12 +343,14 @@ impl<'d> Section<'d> {
         help: String,
         place: Range<usize>,
     ) -> InputError {
-        let misspelt = self.table.keys().find(|k| nearest(k.get_ref(), &[key]).is_some());
+        let told = |text: &str| self.unit.keys(&self.unit.retold(text)).into_owned();
+        let own = told(key);
+        let misspelt = self.table.keys().find(|k| nearest(k.get_ref(), &[key, &own]).is_some());
         let (help, place) = match misspelt {
-            Some(k) => (format!("did you mean {key} where {} is written?", k.get_ref()), k.span()),
-            None => (help, place),
+            Some(k) => (format!("did you mean {own} where {} is written?", k.get_ref()), k.span()),
+            None => (told(&help), place),
         };
-        InputError::new(J004, found, expected, help).at(self.source, place)
+        InputError::new(J004, told(&found), told(expected), help).at(self.source, place)
     }
 
     /// Ends the reading of this table.
@@ -358,11 +375,18 @@ impl<'d> Section<'d> {
             key.get_ref(),
             if self.name.is_empty() { "the top of the file".to_owned() } else { format!("[{}]", self.name) },
         );
-        let help = match nearest(name, &asked) {
+        // A key whose name says its unit is near to one of that unit.
+        let unit = match (in_inches(name), in_millimetres(name)) {
+            (_, Some(_)) => Unit::Inch,
+            (Some(_), None) => Unit::Millimetre,
+            (None, None) => self.unit,
+        };
+        let named: Vec<_> = asked.iter().map(|key| unit.keys(key)).collect();
+        let mut known: Vec<&str> = named.iter().map(|key| &**key).collect();
+        let help = match nearest(name, &known) {
             Some(known) => format!("did you mean {known}?"),
             None => J003.remedy.to_owned(),
         };
-        let mut known = asked.clone();
         known.sort_unstable();
         known.dedup();
         Err(InputError::new(J003, format!("{name} is no key of {place}"), one_of(&known), help)
@@ -384,6 +408,11 @@ impl<'d> Section<'d> {
         let trimmed = self.source.bytes().iter().rposition(|b| !b.is_ascii_whitespace()).map_or(end, |last| last + 1);
         trimmed..trimmed
     }
+}
+
+/// The name of a key without its table.
+fn own_name(path: &str) -> &str {
+    path.rsplit_once('.').map_or(path, |(_, name)| name)
 }
 
 fn one_of(names: &[&str]) -> String {

@@ -5,10 +5,12 @@
 
 pub mod cholesky;
 pub mod codes;
+pub mod count;
 pub mod decimal;
 pub mod diagnostics;
 pub mod document;
 pub mod files;
+pub mod hypotenuse;
 pub mod interruption;
 pub mod length;
 pub mod library;

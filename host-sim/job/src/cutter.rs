@@ -3,6 +3,7 @@
 use truepath_core::gcode::{Criteria, Role};
 use truepath_ground::codes::J008;
 use truepath_ground::diagnostics::{InputError, Source};
+use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 
 use crate::codes::J041;
@@ -20,6 +21,7 @@ pub(crate) fn settle(job: &mut JobFile, program: &Source) -> Result<(), InputErr
         return Ok(());
     }
     let survey = Survey::read(job, program)?;
+    let unit = || Unit::at(program.bytes(), program.bytes().len());
     let mut runs = survey.runs.clone();
     let numbers = &job.numbers;
     let criteria = Criteria { tool: None, wall: numbers.wall, diameter: numbers.tool.diameter, named: false };
@@ -42,7 +44,7 @@ pub(crate) fn settle(job: &mut JobFile, program: &Source) -> Result<(), InputErr
         };
         let list: String = job.cutters.iter().map(one).collect();
         let found = format!("several cutters may make the contour:{list}");
-        return Err(J041.error(found, "").at(job.source(), job.span("tool")));
+        return Err(J041.error(found, "").told_in(unit()).with_keys_in(job.unit).at(job.source(), job.span("tool")));
     };
     let teeth = match (job.gives("tool.teeth"), cutter.teeth) {
         (true, _) => None,
@@ -59,7 +61,7 @@ pub(crate) fn settle(job: &mut JobFile, program: &Source) -> Result<(), InputErr
         let found = format!("stock.allowance_mm is not below the diameter of the cutter, {} mm", mm(diameter));
         let error =
             InputError::new(J008, found, "a smaller allowance", "correct allowance_mm, or say diameter_mm in [tool]");
-        return Err(error.at(job.source(), job.span("stock.allowance_mm")));
+        return Err(error.told_in(unit()).with_keys_in(job.unit).at(job.source(), job.span("stock.allowance_mm")));
     }
     job.assumed.push(cutter.assumed("tool.diameter_mm", mm(diameter).to_string()));
     job.numbers.tool.diameter = diameter;

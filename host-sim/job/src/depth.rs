@@ -5,6 +5,7 @@
 
 use truepath_core::units::{Offset, Position};
 use truepath_ground::diagnostics::{InputError, Source};
+use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 
 use crate::codes::J040;
@@ -53,18 +54,19 @@ pub(crate) fn settle(job: &mut JobFile, program: &Source, plan: Option<&Plan>, l
             _ => {
                 let found = format!(
                     "line {line} cuts at Z {}, and how far that is below the stock's top is not known",
-                    height(z)
+                    told(z)
                 );
-                let expected = "axial_depth_mm in [cut], mm";
-                return Err(J040.error(found, expected).at(program, program.line_span(line)));
+                let expected = "axial_depth_mm in [cut], how deep the cutter is in the stock";
+                return Err(J040.error(found, expected).with_keys_in(job.unit).at(program, program.line_span(line)));
             }
         },
     };
     if depth > Offset::from_um(200_000) {
-        let found = format!("line {line} cuts at Z {}, {} mm below Z 0", height(z), mm(depth));
-        return Err(J040.error(found, "axial_depth_mm in [cut], up to 200 mm").at(program, program.line_span(line)));
+        let found = format!("line {line} cuts at Z {}, {} mm below Z 0", told(z), mm(depth));
+        let error = J040.error(found, "axial_depth_mm in [cut], up to 200 mm").told_in(unit).with_keys_in(job.unit);
+        return Err(error.at(program, program.line_span(line)));
     }
-    fits(job, depth)?;
+    fits(job, depth, unit)?;
     let steps =
         levels.windows(2).map(|pair| pair[0].0 - pair[1].0).chain(levels.first().map(|(z, _)| Position::ZERO - *z));
     let uneven = levels.len() > 1 && steps.filter(|s| *s > Offset::ZERO).any(|s| (s - depth).abs() > SAME);
@@ -77,7 +79,7 @@ pub(crate) fn settle(job: &mut JobFile, program: &Source, plan: Option<&Plan>, l
 }
 
 /// Flutes and stick-out are at least as long as the cut is deep.
-fn fits(job: &JobFile, depth: Offset) -> Result<(), InputError> {
+fn fits(job: &JobFile, depth: Offset, unit: Unit) -> Result<(), InputError> {
     let lengths = [
         ("tool.flute_length_mm", job.shank.flute_length),
         ("tool.stickout_mm", job.numbers.tool.cantilever.map(|c| c.length)),
@@ -88,7 +90,9 @@ fn fits(job: &JobFile, depth: Offset) -> Result<(), InputError> {
     let found = format!("{key} is {} mm, and the program cuts {} mm below the level above it", mm(length), mm(depth));
     let help = "correct it, or say axial_depth_mm in [cut]: how deep the cutter is in the stock";
     let expected = format!("at least {} mm", mm(depth));
-    Err(InputError::new(truepath_ground::codes::J008, found, expected, help).at(job.source(), job.span(key)))
+    let error =
+        InputError::new(truepath_ground::codes::J008, found, expected, help).told_in(unit).with_keys_in(job.unit);
+    Err(error.at(job.source(), job.span(key)))
 }
 
 fn height(z: Position) -> f64 {

@@ -43,8 +43,9 @@ impl Measurement {
         let mut shares: Vec<Vec<Placed>> = vec![Vec::new(); measured.len()];
         {
             let walls = measured.iter().map(|(pass, _)| Walls::of(pass)).collect::<Result<Vec<_>, _>>()?;
+            let unit = measured.first().map_or_else(Unit::default, |(pass, _)| pass.unit());
             for (number, dimension) in (1..).zip(&dimensions) {
-                for (wall, placed) in placed(file, &walls, dimension, lines, number)? {
+                for (wall, placed) in placed((file, unit), &walls, dimension, lines, number)? {
                     if let Some(share) = shares.get_mut(wall) {
                         share.push(placed);
                     }

@@ -20,6 +20,7 @@ use truepath_core::geometry::{Block, Direction, FACET_TURN_LIMIT, Side};
 use truepath_core::job::Compensation;
 use truepath_core::units::{Offset, Real};
 use truepath_ground::diagnostics::{InputError, Source};
+use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 
 use crate::codes::J027;
@@ -93,7 +94,7 @@ pub fn drawn(job: &JobFile, program: &Source) -> Result<Option<Drawn>, InputErro
     }
     let [width, depth] = extent(contour);
     let twice = mm(radius) * 2.0;
-    let beside = |sign: f64| format!("{:.3} by {:.3} mm", width + sign * twice, depth + sign * twice);
+    let beside = |sign: f64| format!("{:.3} mm by {:.3} mm", width + sign * twice, depth + sign * twice);
     let sign = if encloses_wall(contour, wall) { -1.0 } else { 1.0 };
     let found_text = format!(
         "lines {}-{} are cut under {}, and the program does not show whether they are the part's outline (the wall measures {}) or the path of the cutter's centre (it measures {})",
@@ -105,7 +106,8 @@ pub fn drawn(job: &JobFile, program: &Source) -> Result<Option<Drawn>, InputErro
     );
     let line = Lines::new(program.bytes()).find(|l| l.number == found.run.lines.first).map(|l| l.span());
     let span = line.map_or(0..0, |span| span.start..span.end());
-    Err(J027.error(found_text, "compensation in [tool] of the job").at(program, span))
+    let unit = Unit::at(program.bytes(), span.start);
+    Err(J027.error(found_text, "compensation in [tool] of the job").told_in(unit).at(program, span))
 }
 
 /// Whether a conversational program leads to the contour or rounds its corners by blocks of their own.

@@ -9,7 +9,7 @@ use truepath_core::job::{self, ContourPass};
 use truepath_core::probe::{Contact, Outcome, Reading, Rejected};
 use truepath_core::units::{Offset, Position, Real};
 use truepath_ground::diagnostics::{Failure, Source};
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Remark, Unit};
 use truepath_ground::units::{mm, nm};
 
 use crate::codes::M040;
@@ -217,10 +217,12 @@ impl Measurement {
     }
 
     /// One sentence for every reading set aside, and one for widths.
-    pub fn remarks(&self, file: &Source) -> Vec<String> {
+    pub fn remarks(&self, file: &Source) -> Vec<Remark> {
         let aside = self.rejected.iter().map(|aside| {
             let number = self.number(aside.line);
-            format!("{}:{}: point {number} set aside: {}", file.name(), aside.line, why(&aside.reason, self.unit))
+            self.unit.remark(|unit| {
+                format!("{}:{}: point {number} set aside: {}", file.name(), aside.line, why(&aside.reason, unit))
+            })
         });
         let placed = || self.dimensions.iter().flat_map(|dimensions| &dimensions.placed);
         let widths = placed().filter(|placed| placed.across.is_some() && placed.half.is_none()).count();
@@ -230,7 +232,7 @@ impl Measurement {
             } else {
                 format!("{widths} readings are dimensions between two walls: each")
             };
-            format!("{which} stands at the first of them, with the mean error of both")
+            format!("{which} stands at the first of them, with the mean error of both").into()
         });
         let halves = placed().filter(|placed| placed.half.is_some()).count();
         let of_another = (halves > 0).then(|| {
@@ -239,8 +241,8 @@ impl Measurement {
             } else {
                 format!("{halves} readings are dimensions between a wall of this contour and one of another: each")
             };
-            format!("{which} stands at both of them, with the mean error of both")
+            format!("{which} stands at both of them, with the mean error of both").into()
         });
-        self.read_as.iter().cloned().chain(aside).chain(of_two).chain(of_another).collect()
+        self.read_as.iter().map(|said| said.as_str().into()).chain(aside).chain(of_two).chain(of_another).collect()
     }
 }

@@ -12,7 +12,7 @@ use truepath_core::geometry::{Block, Contour, Point, Side};
 use truepath_core::job::{self, Compensation, JobError, Part};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Remark, Unit};
 use truepath_ground::rows::median;
 use truepath_ground::units::{float, mm};
 
@@ -23,7 +23,7 @@ use crate::drawn::{Drawn, drawn};
 use crate::feature;
 use crate::feature::{FeaturePass, FeatureSummary, Plan};
 use crate::feed::Schedule;
-use crate::job::{Assumed, JobFile, Which};
+use crate::job::{JobFile, Which};
 use crate::probe_format::settled;
 use crate::probed_stock::{self, ProbedStock, TouchedPass};
 use crate::refusal::Inputs;
@@ -54,7 +54,7 @@ pub struct Pass {
     /// The feature it belongs to; `None` in a program with one cut and no names.
     pub plan: Option<Plan>,
     /// Things the user should know, in the order in which they were noticed.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Remark>,
 }
 
 /// Stock that is not even, and why that is known.
@@ -83,7 +83,7 @@ pub struct PathBuffer(Vec<Sample>);
 impl Pass {
     /// The same pass with a cutter whose axis stands off by so much, its direction towards a tooth, and a sentence about it.
     #[must_use]
-    pub fn running_out(&self, offset: Offset, said: String) -> Self {
+    pub fn running_out(&self, offset: Offset, said: Remark) -> Self {
         let mut pass = self.clone();
         pass.core.setup.runout = Runout { offset, behind: Real::ZERO };
         pass.warnings.push(said);
@@ -134,7 +134,7 @@ impl Pass {
             match Self::of_plan(job, program.clone(), Some(plan), drawn.as_ref()).and_then(Self::over_known) {
                 Ok(pass) => passes.push(pass),
                 Err(Failure::Input(error)) if several => {
-                    left.push(format!("{name} is left as it is: {}: {}", error.code(), error.found()));
+                    left.push(Remark::from(format!("{name} is left as it is: {}: {}", error.code(), error.found())));
                     refused = refused.or(Some(Failure::Input(error)));
                 }
                 Err(failure) => return Err(failure),
@@ -167,14 +167,15 @@ impl Pass {
         depth::settle(&mut job, &program, plan.as_ref(), level)?;
         job.numbers.part = plan.as_ref().map(|plan| plan.level(level).map(|pass| pass.part)).transpose()?;
         let mut pass = Self::of_part(job, program, plan)?;
-        pass.warnings.extend(drawn.map(|drawn| {
+        let found_out = drawn.map(|drawn| {
             let (path, key) = match drawn.compensation {
                 Compensation::Centre => ("the path of the cutter's centre", "centre"),
                 Compensation::Radius => ("the outline of the part", "radius"),
             };
             let name = pass.program.name();
             format!("{name}: G41 or G42 leads along {path}: {}; tool.compensation = \"{key}\" says so", drawn.why)
-        }));
+        });
+        pass.warnings.extend(found_out.map(Remark::from));
         Ok(pass)
     }
 
@@ -197,16 +198,16 @@ impl Pass {
         blocks.truncate(core.contour.blocks);
         let dialect = job.numbers.dialect;
         let warnings = core.contour.summary.warnings.as_slice().iter().filter(|w| !arms_truepath(w.kind, dialect));
-        let mut warnings: Vec<String> = warnings.map(|w| format!("{}: {w}", program.name())).collect();
-        warnings.extend(job.assumed.iter().map(Assumed::text));
+        let mut warnings: Vec<Remark> = warnings.map(|w| format!("{}: {w}", program.name()).into()).collect();
+        warnings.extend(job.assumed.iter().map(|assumed| assumed.text().into()));
         if core.contour.spindle == Spindle::Stopped {
-            warnings.push(format!(
-                "{}: neither M3 nor M4 before the contour: a clockwise spindle is assumed, on which climb or conventional depends",
-                program.name()
-            ));
+            let said = "neither M3 nor M4 before the contour: a clockwise spindle is assumed, on which climb or conventional depends";
+            warnings.push(format!("{}: {said}", program.name()).into());
         }
-        warnings.extend(other_feed(&job, &program, core.written_feeds));
-        warnings.extend(plan.iter().flat_map(|p| p.warnings.iter().cloned()));
+        let unit = core.contour.units.into();
+        warnings.extend(other_feed(&job, &program, core.written_feeds, unit).map(Remark::from));
+        let of_plan = plan.iter().flat_map(|p| &p.warnings);
+        warnings.extend(of_plan.map(|said| said.clone().remark(unit)));
         let surface = job.read_surface()?;
         let pass = Self { job, program, core, blocks, surface: None, stock: None, plan, warnings };
         match surface {
@@ -219,7 +220,7 @@ impl Pass {
     fn over_known(self) -> Result<Self, Failure> {
         if let Some(roughing) = self.job.roughing {
             let stock = self.of_roughing(|pass| RoughedStock::read(pass, roughing))?;
-            let said = stock.facts.text(self.program.name());
+            let said = self.unit().remark(|unit| stock.facts.text(self.program.name(), unit));
             let mut pass = self.over_stock(KnownStock::Roughed(stock));
             pass.warnings.push(said);
             return Ok(pass);
@@ -227,7 +228,7 @@ impl Pass {
         let Some(file) = self.job.read_stock_probe()? else {
             let hint = self.surface.is_none().then(|| self.of_roughing(roughed_stock::hint)).flatten();
             let mut pass = self;
-            pass.warnings.extend(hint);
+            pass.warnings.extend(hint.map(|said| said.remark(pass.unit())));
             return Ok(pass);
         };
         let stock = {
@@ -239,14 +240,15 @@ impl Pass {
         };
         Ok(match stock {
             Some(stock) => {
-                let said = stock.facts.text();
+                let said = self.unit().remark(|unit| stock.facts.text(unit));
                 let mut pass = self.over_stock(KnownStock::Touched(stock));
                 pass.warnings.push(said);
                 pass
             }
             None => {
                 let mut pass = self;
-                pass.warnings.push(format!("{}: no touch is of this contour: its stock is taken as even", file.name()));
+                let said = format!("{}: no touch is of this contour: its stock is taken as even", file.name());
+                pass.warnings.push(said.into());
                 pass
             }
         })
@@ -297,9 +299,11 @@ impl Pass {
                 .map(|(d, sample)| (radius - d, sample))
                 .find(|(a, _)| *a <= 0.0 || *a >= 2.0 * radius);
             if let Some((allowance, sample)) = worst {
-                let [x, y] = [sample.point.x, sample.point.y].map(|p| p.nm() as f64 / 1e6);
+                let unit = self.unit();
+                let [x, y] = [sample.point.x, sample.point.y].map(|p| unit.of(p.nm() as f64 / 1e6));
+                let (left, name) = (unit.of(allowance), unit.name());
                 return Err(
-                    self.no_stock(format!("leaves {allowance:.3} mm on the finished wall beside X{x:.3} Y{y:.3}"))
+                    self.no_stock(format!("leaves {left:.3} {name} on the finished wall beside X{x:.3} Y{y:.3}"))
                 );
             }
             beside.iter().map(|d| radius - d).collect()
@@ -458,7 +462,7 @@ impl Pass {
     /// Says what roughing leaves as it is known by now.
     pub fn say_roughing(&mut self) {
         let Some(KnownStock::Roughed(stock)) = &self.stock else { return };
-        let said = stock.facts.text(self.program.name());
+        let said = self.unit().remark(|unit| stock.facts.text(self.program.name(), unit));
         let before = format!("{}: {SAID}", self.program.name());
         match self.warnings.iter_mut().find(|text| text.starts_with(&before)) {
             Some(text) => *text = said,
@@ -612,16 +616,20 @@ const fn arms_truepath(kind: WarningKind, dialect: Dialect) -> bool {
 const SAME_FEED: f64 = 0.02;
 
 /// A warning where the program cuts at another feed than the job says: a corrected program keeps its F words.
-fn other_feed(job: &JobFile, program: &Source, written: [Real; 2]) -> Option<String> {
+fn other_feed(job: &JobFile, program: &Source, written: [Real; 2], unit: Unit) -> Option<String> {
     let feed = float(job.numbers.cut.feed_mm_per_min?);
     let [least, greatest] = written.map(float);
     if greatest <= 0.0 || [least, greatest].iter().all(|written| (written / feed - 1.0).abs() < SAME_FEED) {
         return None;
     }
-    let says = if least == greatest { format!("F{greatest}") } else { format!("F{least} to F{greatest}") };
+    let ([low, high], name) = ([least, greatest].map(|feed| unit.of(feed)), unit.name());
+    let says = if least == greatest { format!("F{high}") } else { format!("F{low} to F{high}") };
     Some(format!(
-        "cut.feed_mm_per_min is {feed}, the contour in {} says {says}: everything holds for {feed} mm/min; run the program at that feed, or \
+        "{} is {}, the contour in {} says {says} {name}/min: everything holds for {} {name}/min; run the program at that feed, or \
          remove the key",
-        program.name()
+        job.unit.keys("cut.feed_mm_per_min"),
+        job.unit.of(feed),
+        program.name(),
+        unit.of(feed)
     ))
 }

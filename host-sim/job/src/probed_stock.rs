@@ -56,11 +56,17 @@ pub struct StockFacts {
 
 impl StockFacts {
     /// In a sentence.
-    pub fn text(&self) -> String {
+    pub fn text(&self, unit: Unit) -> String {
+        let name = unit.name();
         let Self { file, touches, places, expected_mm, mean_mm, least_mm, most_mm, sigma_mm, .. } = self;
         format!(
-            "{file}: the stock was touched at {places} places ({touches} touches): {least_mm:.3} to {most_mm:.3} mm on the wall, \
-             mean {mean_mm:.3} mm where the job says {expected_mm:.3} mm; known to {sigma_mm:.3} mm (one sigma)"
+            "{file}: the stock was touched at {places} places ({touches} touches): {:.3} to {:.3} {name} on the wall, mean {:.3} \
+             {name} where the job says {:.3} {name}; known to {:.3} {name} (one sigma)",
+            unit.of(*least_mm),
+            unit.of(*most_mm),
+            unit.of(*mean_mm),
+            unit.of(*expected_mm),
+            unit.of(*sigma_mm)
         )
     }
 }
@@ -116,7 +122,8 @@ pub(crate) fn read(pass: &TouchedPass<'_>, file: &Source) -> Result<Option<Probe
             &readings,
             expected,
             (file, unit),
-        )?;
+        )
+        .map_err(|error| error.with_keys_in(pass.job.unit))?;
     }
     let mut contacts: Vec<Contact> = readings.iter().filter_map(|r| on_stock.contact(r).ok()).collect();
     contacts.sort_unstable_by_key(|c| (c.s, c.height, c.error, c.line));

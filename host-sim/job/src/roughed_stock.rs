@@ -18,6 +18,7 @@ use truepath_core::geometry::{Block, Contour, Extent, Nearby, Point, Side};
 use truepath_core::job::{ContourPass, JobError};
 use truepath_core::units::{Offset, Position, Real};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::length::{Said, Unit};
 use truepath_ground::units::mm;
 
 use crate::codes::K008;
@@ -102,16 +103,22 @@ pub struct RoughFacts {
 
 impl RoughFacts {
     /// In a sentence.
-    pub fn text(&self, program: &str) -> String {
+    pub fn text(&self, program: &str, unit: Unit) -> String {
+        let name = unit.name();
         let Self { runs, diameter_mm, expected_mm, mean_mm, least_mm, most_mm, pushed_mm } = self;
         let runs = if *runs == 1 { "one run".to_owned() } else { format!("{runs} runs") };
         let pushed = pushed_mm.map_or_else(
             || ", as its paths say; how far it was itself pushed away is not counted".to_owned(),
-            |more| format!(", {more:.3} mm of it because it was pushed away itself"),
+            |more| format!(", {:.3} {name} of it because it was pushed away itself", unit.of(more)),
         );
         format!(
-            "{program}: {SAID} ({runs} of a cutter of {diameter_mm} mm) leaves {least_mm:.3} to {most_mm:.3} mm on the \
-             wall, mean {mean_mm:.3} mm where the job says {expected_mm:.3} mm{pushed}"
+            "{program}: {SAID} ({runs} of a cutter of {} {name}) leaves {:.3} to {:.3} {name} on the wall, mean {:.3} {name} where \
+             the job says {:.3} {name}{pushed}",
+            unit.of(*diameter_mm),
+            unit.of(*least_mm),
+            unit.of(*most_mm),
+            unit.of(*mean_mm),
+            unit.of(*expected_mm)
         )
     }
 }
@@ -248,9 +255,10 @@ impl RoughedStock {
             let error = InputError::new(K008, found, "passes of the program that leave the stock of this one", help);
             error.at(pass.job.source(), pass.job.span("stock.roughing_diameter_mm")).into()
         };
+        let unit = Unit::from(pass.core.contour.units);
         let runs = self.runs_before(pass).count();
         if runs == 0 {
-            let z = pass.core.contour.z.nm() as f64 / 1e6;
+            let z = unit.of(pass.core.contour.z.nm() as f64 / 1e6);
             let tool = pass.job.roughing.and_then(|r| r.tool).map_or_else(String::new, |t| format!(" of tool {t}"));
             let lines = pass.core.contour.lines;
             let found = format!("no cut{tool} before lines {}-{} goes down to about Z{z}", lines.first, lines.last);
@@ -275,7 +283,7 @@ impl RoughedStock {
         })?;
         // What a machine that is only believed in would have pushed too far is no fault of the program.
         if let Some((nothing, point)) = wrong.filter(|_| self.pushed.is_empty()) {
-            let [x, y] = [point.x, point.y].map(|p| p.nm() as f64 / 1e6);
+            let [x, y] = [point.x, point.y].map(|p| unit.of(p.nm() as f64 / 1e6));
             let (what, help) = if nothing {
                 let help = "correct roughing_diameter_mm; name the tool in roughing_tool where other cuts of the program are no roughing";
                 ("nothing on the finished wall", help)
@@ -305,7 +313,7 @@ const MOST_ROWS: usize = 100;
 const UNEVEN: f64 = 0.1;
 
 /// That the program's own roughing leaves something else than the even stock of the job, where it does.
-pub(crate) fn hint(pass: &RoughedPass<'_>) -> Option<String> {
+pub(crate) fn hint(pass: &RoughedPass<'_>) -> Option<Said> {
     let plan = pass.plan.filter(|plan| plan.rows.len() <= MOST_ROWS)?;
     let own = plan.tool.or(pass.job.numbers.tool.number);
     let of = |role: &'static str| plan.rows.iter().filter(move |row| row.role == role);
@@ -324,13 +332,18 @@ pub(crate) fn hint(pass: &RoughedPass<'_>) -> Option<String> {
     let off = (most_mm - expected_mm).abs().max((least_mm - expected_mm).abs());
     let tool = roughing.tool.filter(|tool| Some(*tool) != own);
     let tool = tool.map_or_else(String::new, |tool| format!(" and roughing_tool = {tool}"));
-    (off > UNEVEN * expected_mm).then(|| {
+    let said = |unit: Unit| {
         format!(
-            "{}: its own roughing leaves {least_mm:.3} to {most_mm:.3} mm on this wall, where the job says {expected_mm:.3} mm all \
-             along: roughing_diameter_mm = {diameter_mm}{tool} in [stock] takes that into account",
-            pass.program.name()
+            "{}: its own roughing leaves {:.3} to {:.3} {name} on this wall, where the job says {:.3} {name} all along: \
+             roughing_diameter_mm = {diameter_mm}{tool} in [stock] takes that into account",
+            pass.program.name(),
+            unit.of(least_mm),
+            unit.of(most_mm),
+            unit.of(expected_mm),
+            name = unit.name()
         )
-    })
+    };
+    (off > UNEVEN * expected_mm).then(|| Said::of(said))
 }
 
 /// What is left on the wall beside a sample.

@@ -10,13 +10,13 @@ const INCH = 25.4;
 const inches = (mm, decimals) => { const text = (mm / INCH).toFixed(decimals); return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−"); };
 const signed = (mm, decimals) => { const text = inches(mm, decimals); return text.startsWith("−") || Number(text) === 0 ? text : `+${text}`; };
 
-/** Everything the page says to anybody, and what stands on its canvases. Warnings are in the unit of the program. */
+/** Everything the page says to anybody, and what stands on its canvases. */
 async function said(page) {
   await settled(page);
   return page.evaluate(() => {
     const all = [];
     const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
-    for (let node = walk.nextNode(); node; node = walk.nextNode()) if (!node.parentElement.closest("script, style, noscript, .warnings, #unit, #live")) all.push(node.data);
+    for (let node = walk.nextNode(); node; node = walk.nextNode()) if (!node.parentElement.closest("script, style, noscript, #unit, #live")) all.push(node.data);
     for (const name of ["aria-label", "aria-valuetext", "title", "data-at"]) {
       for (const element of document.querySelectorAll(`[${name}]:not(#unit)`)) all.push(element.getAttribute(name));
     }
@@ -54,7 +54,7 @@ function straight(more = {}) {
     outlook: { now: { mean_mm: 0.0508, worst_mm: 0.0508 }, next: { mean_mm: 0.000254, mean_sigma_mm: 0.00127, worst_mm: 0.000254, worst_sigma_mm: 0.00254 }, floor_mm: 0.00254 },
     results: [{ name: "largest error", value: 0.0508, decimals: 3, unit: "mm", note: ["at s = 100.0 mm", "at s = 3.937 in"] },
       { name: "chip", value: 0.064516, decimals: 3, unit: "mm²" }, { name: "force", value: 100, decimals: 1, unit: "N" }],
-    told: ["Will be 0.003 mm", "Will be 0.0001 in"], tolerance_mm: 0.0381,
+    told: ["Will be 0.003 mm", "Will be 0.0001 in"], tolerance_mm: 0.0381, warnings: [["0.127 mm are left", "0.0050 in are left"], "no lengths"],
     verdict: { state: "open", text: ["within ±0.0381 mm", "within ±0.0015 in"] },
     ...more,
   };

@@ -151,6 +151,18 @@ for (const view of VIEWS) {
   });
 }
 
+test("the first sheet of paper looks as before", async (t) => {
+  // A4 at 96 px an inch, between its margins.
+  const { page, close } = await open(await report("demo/pocket"), { viewport: { width: 718, height: 1047 } });
+  await page.emulateMedia({ media: "print" });
+  await page.evaluate(() => window.dispatchEvent(new Event("beforeprint")));
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  const picture = await settled(page);
+  await page.emulateMedia({ media: null });
+  await close();
+  await compared(t, { picture, scenes: [] }, "demo-pocket-print.png");
+});
+
 test("the wall in 3D looks as before", async (t) => {
   const { page, close } = await open(await report("demo/pocket"), SIZE);
   await page.fill("#scrub", "560");

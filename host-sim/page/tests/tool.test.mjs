@@ -37,6 +37,9 @@ function pc(folder, ...words) {
   return execFileSync(program, words, { cwd: folder, encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
 }
 
+/** Milliseconds since the page was asked for. */
+const sinceOpened = (page) => page.evaluate(() => Math.round(performance.now()));
+
 /** The page, open; it must not complain or ask the network for anything. */
 async function open(t, { expected, ...options } = {}) {
   const context = await (await browser()).newContext({ acceptDownloads: true, ...options });
@@ -150,12 +153,14 @@ test("the corner of the demonstration, one click away, comes out as on the comma
   await press(page, "Try it with the corner");
   const folder = await folderOf(...part("corner"));
   const job = ["job.toml", "--probe", "probe.txt"];
+  t.diagnostic(`the example is there ${await sinceOpened(page)} ms after the page was asked for`);
   for (const [button, out, words] of [
     ["Correct the program", "corrected", ["correct", ...job]],
     ["Inspect the wall", "inspection", ["inspect", ...job]],
     ["Image for the coprocessor", "image", ["correct", ...job, "--route", "coprocessor"]],
   ]) {
     await run(page, button);
+    if (out === "corrected") t.diagnostic(`and its program is corrected after ${await sinceOpened(page)} ms`);
     const printed = pc(folder, ...words, "-o", out, "--force");
     // How certain the wall is comes of exponentials in floating point.
     same(await offered(page, "results", out), await below(join(folder, out)), ["summary.json"]);

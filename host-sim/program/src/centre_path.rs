@@ -14,6 +14,7 @@ use std::ops::Range;
 use truepath_core::gcode::{CompensationBy, Line, Motion, Plane};
 use truepath_core::geometry;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Unit;
 
 use super::edit::{BlockEdit, RewriteOptions};
 use super::fit::Shape;
@@ -72,11 +73,12 @@ pub(super) fn without_switches(
 }
 
 /// The options, with the note that the head of the program carries.
-pub(super) fn noted(options: &RewriteOptions) -> RewriteOptions {
+pub(super) fn noted(options: &RewriteOptions, program: &[u8]) -> RewriteOptions {
     let mut noted = options.clone();
     let radius = match options.program.compensation {
         CompensationBy::Radius(radius) | CompensationBy::ToolRadius { radius, .. } => {
-            format!("the cutter radius of {} mm", radius.nm() as f64 / 1e6)
+            let unit = Unit::at(program, program.len());
+            format!("the cutter radius of {} {}", unit.of(radius.nm() as f64 / 1e6), unit.name())
         }
         CompensationBy::Nothing | CompensationBy::Table => "the cutter radius".to_owned(),
     };

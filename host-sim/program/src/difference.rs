@@ -13,6 +13,7 @@ use super::edit::{BlockEdit, RewriteOptions};
 use super::proof::{Kink, Proof};
 use super::survey::Move;
 use super::vector::length;
+use truepath_ground::length::Unit;
 
 /// The largest displacement of the contour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
@@ -108,15 +109,15 @@ impl Difference {
         }
     }
 
-    /// `difference.txt`.
-    pub fn text(&self, original: &str) -> String {
+    /// `difference.txt`, in the unit of the program.
+    pub fn text(&self, original: &str, unit: Unit) -> String {
         let mut text = String::new();
         let others: Vec<String> = self.other_lines_changed.iter().map(u32::to_string).collect();
         let kink = match self.largest_kink_line {
             0 => "none".to_owned(),
             line => format!("{:.3} deg at line {line} of corrected.nc", self.largest_kink_deg),
         };
-        let shift = self.largest_shift;
+        let (shift, name) = (self.largest_shift, unit.name());
         // Writing to a String cannot fail.
         let _ = write!(
             text,
@@ -127,8 +128,8 @@ impl Difference {
              other lines changed               {}\n\
              cutter compensation               {}\n\
              written for the contour           {} G1, {} G2/G3\n\
-             largest shift                     {:.4} mm, line {} near X{:.3} Y{:.3} mm\n\
-             largest deviation from the path   {:.5} mm (tolerance {} mm)\n\
+             largest shift                     {:.4} {name}, line {} near X{:.3} Y{:.3} {name}\n\
+             largest deviation from the path   {:.5} {name} (tolerance {} {name})\n\
              largest kink where it was smooth  {kink}\n\
              beyond the wanted path's own turn {:.3} deg (limit {} deg)\n\
              \n\
@@ -151,12 +152,12 @@ impl Difference {
             },
             self.straight_moves,
             self.arcs,
-            shift.mm,
+            unit.of(shift.mm),
             shift.line,
-            shift.x_mm,
-            shift.y_mm,
-            self.largest_deviation_mm,
-            self.tolerance_mm,
+            unit.of(shift.x_mm),
+            unit.of(shift.y_mm),
+            unit.of(self.largest_deviation_mm),
+            unit.of(self.tolerance_mm),
             self.largest_kink_beyond_path_deg,
             self.max_kink_deg,
             self.steps_outside_compared,

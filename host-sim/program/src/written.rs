@@ -45,8 +45,8 @@ pub(super) fn write(
     let mut manner = Manner { two_digits: false, klartext: conversational };
     manner.two_digits = raw.iter().map(|&l| Block::new(l, manner)).any(|b| b.motion_word().is_some() && b.two_digits());
     let compensated = centre_path::stretches(moves, edits);
-    let noted = centre_path::noted(options);
-    let options = if compensated.is_empty() { options } else { &noted };
+    let noted = (!compensated.is_empty()).then(|| centre_path::noted(options, source.bytes()));
+    let options = noted.as_ref().unwrap_or(options);
     let switches = centre_path::without_switches(&raw, moves, &compensated, manner);
     let stripped = switches.as_ref().cloned().unwrap_or_default();
     let text = |l: &Line<'_>| stripped.get(&l.number).map(Vec::as_slice);

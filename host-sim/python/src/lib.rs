@@ -49,6 +49,23 @@ mod _truepath {
         read().map_err(|failure| raised(py, failure, &hidden))
     }
 
+    /// Plans, and writes what `truepath plan` writes.
+    #[pyfunction]
+    fn plan(py: Python<'_>, words: Vec<OsString>, given: Given<'_>) -> PyResult<()> {
+        let mut options: command::plan::Options =
+            options(words).map_err(|failure| raised(py, failure, &given.hidden))?;
+        options.probe_flags.millimetres = given.millimetres;
+        done(py, given, move |progress| command::plan::run(&options, progress).map(drop))
+    }
+
+    /// Puts the part of a folder into a store, as the command `by` does; a sentence for each history.
+    #[pyfunction]
+    fn keep(py: Python<'_>, job: PathBuf, store: String, folder: PathBuf, by: &str) -> PyResult<Vec<String>> {
+        let by = if by == "learn" { "learn" } else { "correct" };
+        let kept = py.detach(|| command::store::kept((&job, Some(&store)), &folder, by));
+        kept.map_err(|failure| raised(py, failure, &[]))
+    }
+
     /// Corrects, and writes what `truepath correct` writes.
     #[pyfunction]
     fn correct(py: Python<'_>, words: Vec<OsString>, given: Given<'_>) -> PyResult<()> {
@@ -64,7 +81,10 @@ mod _truepath {
         let mut options: command::learn::Options =
             options(words).map_err(|failure| raised(py, failure, &given.hidden))?;
         options.said.probe.millimetres = given.millimetres;
-        done(py, given, move |progress| command::learn::run(&options, progress).map(drop))
+        done(py, given, move |progress| match command::learn::of_planned(&options) {
+            true => command::learn::run_planned(&options, progress).map(drop),
+            false => command::learn::run(&options, progress).map(drop),
+        })
     }
 
     /// Simulates, and writes what `truepath simulate` writes.
@@ -100,11 +120,13 @@ mod _truepath {
         done(py, given, move |progress| command::demo::run(&options, progress).map(drop))
     }
 
-    /// Writes the files of a correction into a folder, whole or not at all.
+    /// Writes the files of a correction or of a plan into a folder, whole or not at all.
     #[pyfunction]
     fn save(py: Python<'_>, folder: PathBuf, files: Vec<(String, Vec<u8>)>, force: bool) -> PyResult<()> {
         let write = || -> Result<(), Failure> {
-            let folder = OutputFolder::create(&folder, force, command::correct::FILES)?;
+            let is_plan = files.iter().any(|(name, _)| name == command::plan::PROGRAM);
+            let names = if is_plan { command::plan::FILES } else { command::correct::FILES };
+            let folder = OutputFolder::create(&folder, force, names)?;
             files.iter().try_for_each(|(name, bytes)| folder.write(name, bytes))?;
             Ok(folder.commit()?)
         };

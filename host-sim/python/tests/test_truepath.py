@@ -6,6 +6,7 @@
 import json
 import math
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -94,6 +95,8 @@ class OfTheCommand(Wheel):
                     done.save(saved)
                     self.assertEqual(files(saved), files(out))
                     self.same(truepath.Correction.read(saved), out)
+                    with self.assertRaisesRegex(ValueError, "those of a correction.*Correction.read"):
+                        truepath.Plan.read(saved)
 
     def test_what_is_learned(self):
         part = PARTS / "corner-helix"
@@ -129,6 +132,95 @@ class OfTheCommand(Wheel):
             self.assertEqual(found.summary, told["summary"])
             self.assertEqual(found.error_mm.tolist(), [c["error_mm"] for c in told["contacts"]])
             self.assertEqual(found.contour.tolist(), [c.get("contour", "") for c in told["contacts"]])
+
+
+    def test_what_is_typed_in_place_of_touches(self):
+        part = PARTS / "pocket"
+        job = truepath.Job.read(part / "job.toml")
+        command("probe", part / "job.toml", "--dimensions", "-o", self.folder / "sheet.html")
+        # As a calliper reads walls with a tenth of a millimetre left on each.
+        read = lambda dimension: f'{dimension[1]}{float(dimension[2]) - 0.2:.3f}\n'
+        sheet = (self.folder / "sheet.toml").read_text()
+        typed = re.sub(r'(nominal ([\d.]+) mm\n(?:[^[]*\n)?value_mm = )""\n', read, sheet)
+        measured = self.folder / "dimensions.toml"
+        measured.write_text(typed)
+        command("correct", part / "job.toml", "--dimensions", measured, "-o", self.folder / "out")
+        for given in [measured, measured.read_text()]:
+            done = truepath.correct(job, dimensions=given)
+            for name in ["correction.csv", "wall.csv", "points.csv"]:
+                self.assertEqual(done.files[name], (self.folder / "out" / name).read_bytes(), name)
+        told = json.loads(command("inspect", part / "job.toml", "--dimensions", measured, json_out=True))
+        errors = truepath.inspect(job, dimensions=measured).error_mm
+        self.assertEqual(errors.tolist(), [c["error_mm"] for c in told["contacts"]])
+        np.testing.assert_allclose(errors, 0.1, atol=1e-6)
+        found = truepath.identify(job, dimensions=measured)
+        self.assertEqual(found.parameters["compliance"].value, done.summary["identified"]["compliance"]["value"])
+        with self.assertRaises(truepath.TruepathError):
+            truepath.correct(job)
+
+    def test_planned_passes_and_what_is_learned_of_them(self):
+        folder = self.folder
+        part = shutil.copytree(PARTS / "corner-helix", folder / "part")
+        # Limits under which a search is short.
+        with open(part / "job.toml", "a") as file:
+            file.write("\n[plan]\nmax_cuts = 2\nmax_levels = 1\nmax_percent = 100\n")
+        job, probe = truepath.Job.read(part / "job.toml"), part / "probe.txt"
+        words = ["--tolerance", "0.05", "--write", "1"]
+        command("plan", part / "job.toml", "--probe", probe, *words, "-o", folder / "plan")
+        plan = truepath.plan(job, probe, tolerance_mm=0.05, write=1)
+        ours, theirs = plan.files, files(folder / "plan")
+        self.assertEqual(sorted(ours), sorted(theirs))
+        # The summary names the folder.
+        different = {name for name, data in theirs.items() if ours[name] != data}
+        self.assertLessEqual(different, {"summary.json"})
+        self.assertEqual(plan.summary["choices"], json.loads(theirs["summary.json"])["choices"])
+        self.assertEqual(plan.planned_program.encode(), theirs["planned.nc"])
+        self.assertIsNone(truepath.plan(job, probe, tolerance_mm=0.05).planned_program)
+        plan.save(folder / "saved")
+        self.assertEqual(files(folder / "saved"), ours)
+
+        verify = folder / "verify.ngc"
+        command("probe", part / "job.toml", "--dialect", "linuxcnc", "-o", verify)
+        cut = ["simulate", part / "job.toml", "--plant", part / "plant.toml", "--program", folder / "plan/planned.nc"]
+        command(*cut, "--touch", verify, "-o", folder / "cut")
+        touched = folder / "cut" / "probe.txt"
+        command("learn", part / "job.toml", "--probe", touched, "--from", folder / "plan", "-o", folder / "next")
+        with self.assertRaisesRegex(ValueError, "holds no correction: its files are those of a plan.*Plan.read"):
+            truepath.Correction.read(folder / "plan")
+        for previous in [plan, truepath.Plan.read(folder / "plan")]:
+            learned = truepath.learn(job, previous, touched)
+            self.assertIsInstance(learned, truepath.Plan)
+            self.assertEqual(learned.planned_program.encode(), (folder / "next" / "planned.nc").read_bytes())
+        with self.assertRaisesRegex(ValueError, "Plan.read"):
+            truepath.learn(job, folder / "plan", touched)
+
+    def test_images_are_signed(self):
+        part, key = PARTS / "corner-helix", self.folder / "key"
+        command("key", "new", key)
+        done = truepath.correct(truepath.Job.read(part / "job.toml"), part / "probe.txt", route="coprocessor", sign=key)
+        image = self.folder / "correction.tpi"
+        image.write_bytes(done.image)
+        command("image", "verify", image, "--key", f"{key}.pub")
+        plain = truepath.correct(truepath.Job.read(part / "job.toml"), part / "probe.txt", route="coprocessor")
+        image.write_bytes(plain.image)
+        with self.assertRaises(subprocess.CalledProcessError):
+            command("image", "verify", image, "--key", f"{key}.pub")
+
+    def test_a_store_takes_parts_and_is_asked(self):
+        part, store = PARTS / "corner-helix", self.folder / "shop.db"
+        named = '[store]\nmachine = "mill-1"\ncutter = "em-20"\nmaterial = "al"\nprior = "shop"\n'
+        text = (part / "job.toml").read_text() + named
+        job = truepath.Job.from_text(text, (part / "program.nc").read_text())
+        with self.assertWarnsRegex(truepath.TruepathWarning, "not in the store"):
+            warnings.simplefilter("always", truepath.TruepathWarning)
+            truepath.correct(job, part / "probe.txt", store=store)
+        command("store", "init", "--store", store)
+        parts = lambda: json.loads(command("store", "status", "--store", store, json_out=True))["parts"]
+        self.assertEqual(parts(), 0)
+        truepath.correct(job, part / "probe.txt", store=store)
+        self.assertEqual(parts(), 1)
+        truepath.identify(job, part / "probe.txt", store=store)
+        self.assertEqual(parts(), 1)
 
 
 class Arrays(Wheel):

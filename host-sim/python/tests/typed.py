@@ -26,7 +26,17 @@ def corrected(folder: Path, touches: npt.NDArray[np.float64]) -> float:
     return float(correction.error_after_mm.max())
 
 
+def planned(folder: Path) -> int:
+    job = truepath.Job.read(folder / "job.toml")
+    plan = truepath.plan(job, folder / "probe.txt", tolerance_mm=0.05, write=True)
+    better: truepath.Plan = truepath.learn(job, plan, folder / "probe-2.txt", replan=True)
+    typed = truepath.correct(job, dimensions=folder / "dimensions.toml", store="shop.db", sign=folder / "key")
+    plan.save(folder / "planned")
+    return len(better.planned_program or "") + len(typed.image or b"")
+
+
 def wrong(job: truepath.Job) -> None:
     truepath.correct(job, "probe.txt", route="both")  # type: ignore[arg-type]
     truepath.simulate(job).nothing  # type: ignore[attr-defined]
-    truepath.learn(job, "probe.txt")  # type: ignore[call-arg]
+    truepath.learn(job)  # type: ignore[call-overload]
+    truepath.plan(job)  # type: ignore[call-arg]

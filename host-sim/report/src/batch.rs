@@ -9,6 +9,7 @@ use truepath_chart::curve::{Band, Curve};
 use truepath_chart::panel::{Mark, Panel, panels_over};
 use truepath_chart::style::{DARK, INK_AFTER, INK_BEFORE, Ink, NOMINAL};
 use truepath_chart::view::View;
+use truepath_ground::count::counted;
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::length::Unit;
 
@@ -19,16 +20,18 @@ const OWN_STYLE: &str = ".places th:first-child, .places td:first-child { text-a
 /// The axis of the charts.
 const PARTS: &str = "part";
 
-/// The page of a batch.
+/// The page of a batch, with lengths in a unit.
 ///
 /// # Errors
 /// Internal, when a chart cannot be drawn.
-pub fn batch_page(batch: &Batch, name: &str) -> Result<String, Failure> {
+pub fn batch_page(batch: &Batch, name: &str, unit: Unit) -> Result<String, Failure> {
     let worst = batch.worst();
     // A chart of one part has no width.
-    let level = if batch.states.len() > 1 { Some(moves(batch)?) } else { None };
-    let chart =
-        worst.filter(|place| place.deviations_mm.len() > 1).map(|place| control_chart(batch, place)).transpose()?;
+    let level = if batch.states.len() > 1 { Some(moves(batch, unit)?) } else { None };
+    let chart = worst
+        .filter(|place| place.deviations_mm.len() > 1)
+        .map(|place| control_chart(batch, place, unit))
+        .transpose()?;
     let nearest =
         if batch.tolerance_mm.is_some() { "The place nearest to its limit" } else { "The place that is farthest off" };
     let page = html! {
@@ -44,10 +47,10 @@ pub fn batch_page(batch: &Batch, name: &str) -> Result<String, Failure> {
                 main {
                     h1 { "Batch: " (name) }
                     p.verdict { (verdict(batch)) }
-                    ul { @for text in batch.words(Unit::Millimetre) { li { (text) } } }
+                    ul { @for text in batch.words(unit) { li { (text) } } }
                     p.soft {
-                        (batch.touched) " parts touched, " (batch.parts[0]) " to " (batch.parts[1]) "; a reading repeats to ± "
-                        (um(2.0 * batch.noise_mm)) " µm (2 sigma) beside what is told here"
+                        (counted(batch.touched, "part")) " touched, " (batch.parts[0]) " to " (batch.parts[1]) "; a reading repeats to ± "
+                        (um(2.0 * batch.noise_mm, unit)) " " (unit.small_name()) " (2 sigma) beside what is told here"
                     }
                     @if let Some(svg) = level {
                         h2 { "What moves from part to part" }
@@ -55,12 +58,12 @@ pub fn batch_page(batch: &Batch, name: &str) -> Result<String, Failure> {
                     }
                     @if let (Some(place), Some(svg)) = (worst, chart) {
                         h2 { (nearest) }
-                        figure { (PreEscaped(svg)) figcaption { (place.place.words(Unit::Millimetre)) ", individuals and exponentially weighted mean" } }
+                        figure { (PreEscaped(svg)) figcaption { (place.place.words(unit)) ", individuals and exponentially weighted mean" } }
                     }
                     h2 { "Every place" }
-                    div.scroll tabindex="0" role="region" aria-label="Every place" { (places(batch)) }
+                    div.scroll tabindex="0" role="region" aria-label="Every place" { (places(batch, unit)) }
                     h2 { "Part by part" }
-                    div.scroll tabindex="0" role="region" aria-label="Part by part" { (parts(batch)) }
+                    div.scroll tabindex="0" role="region" aria-label="Part by part" { (parts(batch, unit)) }
                     p.soft {
                         "Standard deviations of places are those from part to part (moving range); limits are exceeded by chance once in thousands of parts. "
                         "Cpk with the interval that holds it with 95 %. Force level and radius count from the first part of the batch; ± is two standard deviations."
@@ -72,8 +75,13 @@ pub fn batch_page(batch: &Batch, name: &str) -> Result<String, Failure> {
     Ok(page.into_string())
 }
 
-fn um(mm: f64) -> String {
-    format!("{:.1}", mm * 1e3)
+fn um(mm: f64, unit: Unit) -> String {
+    format!("{:.1}", unit.small(mm))
+}
+
+/// How many of what the charts show are a millimetre: micrometres or inches.
+fn per_mm(unit: Unit) -> f64 {
+    if unit == Unit::Inch { unit.said(1.0) } else { 1e3 }
 }
 
 fn verdict(batch: &Batch) -> String {
@@ -101,7 +109,7 @@ fn verdict(batch: &Batch) -> String {
 type OfState = (&'static str, Ink, fn(&State) -> Known);
 
 /// A state over the parts, with two standard deviations.
-fn of_state(batch: &Batch, unit: &str, scale: f64, curves: &[OfState]) -> Panel {
+fn of_state(batch: &Batch, name: impl Into<String>, scale: f64, curves: &[OfState]) -> Panel {
     let points =
         |of: fn(&State) -> Known| batch.states.iter().map(|s| (f64::from(s.part), scale * of(s).value)).collect();
     let lines = curves.iter().map(|(name, ink, of)| Curve::new(*name, *ink, points(*of))).collect();
@@ -112,18 +120,23 @@ fn of_state(batch: &Batch, unit: &str, scale: f64, curves: &[OfState]) -> Panel 
         });
         Band { name: String::new(), colour: NOMINAL, edges: edges.collect() }
     });
-    Panel { band, ..Panel::new(unit, lines) }
+    Panel { band, ..Panel::new(name, lines) }
 }
 
-fn moves(batch: &Batch) -> Result<String, Failure> {
-    let known = batch.is_pushed();
+fn moves(batch: &Batch, unit: Unit) -> Result<String, Failure> {
+    let (known, small) = (batch.is_pushed(), unit.small_name());
     let mut rows = Vec::new();
     if known {
         rows.push(of_state(batch, "force level (%)", 100.0, &[("", INK_BEFORE, |s| s.force_level)]));
     }
-    rows.push(of_state(batch, "radius lost (µm)", 1e3, &[("", INK_AFTER, |s| s.radius_lost_mm)]));
+    rows.push(of_state(
+        batch,
+        format!("radius lost ({small})"),
+        per_mm(unit),
+        &[("", INK_AFTER, |s| s.radius_lost_mm)],
+    ));
     let datum: [OfState; 2] = [("X", INK_AFTER, |s| s.datum_mm[0]), ("Y", INK_BEFORE, |s| s.datum_mm[1])];
-    rows.push(of_state(batch, "datum (µm)", 1e3, &datum));
+    rows.push(of_state(batch, format!("datum ({small})"), per_mm(unit), &datum));
     text(
         panels_over(&View { title: Some(String::new()), ..View::default() }, "", PARTS, &rows)?,
         "Force level, radius and datum over the parts",
@@ -131,10 +144,12 @@ fn moves(batch: &Batch) -> Result<String, Failure> {
 }
 
 /// Individuals with their limits, and the weighted mean with its own.
-fn control_chart(batch: &Batch, place: &PlaceChart) -> Result<String, Failure> {
+fn control_chart(batch: &Batch, place: &PlaceChart, unit: Unit) -> Result<String, Failure> {
     let all = &place.deviations_mm;
+    let (small, scale) = (unit.small_name(), per_mm(unit));
     let ends = [all.first(), all.last()].map(|p| p.map_or(0.0, |(part, _)| f64::from(*part)));
-    let level = |name: &str, ink: Ink, value: f64| Curve::new(name, ink, ends.map(|part| (part, 1e3 * value)).to_vec());
+    let level =
+        |name: &str, ink: Ink, value: f64| Curve::new(name, ink, ends.map(|part| (part, scale * value)).to_vec());
     let limit = Ink { colour: DARK, dashes: truepath_chart::style::DASHES };
     let tolerance = |name: &str, value: f64| level(name, INK_BEFORE, value);
     let both =
@@ -144,18 +159,18 @@ fn control_chart(batch: &Batch, place: &PlaceChart) -> Result<String, Failure> {
         singles.extend(both("tolerance", limits, &tolerance));
     }
     let mut rows = Vec::new();
-    let points: Vec<(f64, f64)> = all.iter().map(|(part, d)| (f64::from(*part), 1e3 * d)).collect();
+    let points: Vec<(f64, f64)> = all.iter().map(|(part, d)| (f64::from(*part), scale * d)).collect();
     singles.push(Curve::new("deviation", INK_AFTER, points.clone()));
     let marks = points.iter().map(|(part, d)| Mark { s_mm: *part, value: *d, outlying: false }).collect();
     if let Some(chart) = &place.chart {
         singles.extend(both("control limits", chart.limits_mm, &|name, value| level(name, limit, value)));
-        rows.push(Panel { marks, ..Panel::new("deviation (µm)", singles) });
-        let weighted = all.iter().zip(&chart.ewma_mm).map(|((part, _), d)| (f64::from(*part), 1e3 * d)).collect();
+        rows.push(Panel { marks, ..Panel::new(format!("deviation ({small})"), singles) });
+        let weighted = all.iter().zip(&chart.ewma_mm).map(|((part, _), d)| (f64::from(*part), scale * d)).collect();
         let mut means = vec![Curve::new("weighted mean", INK_AFTER, weighted)];
         means.extend(both("control limits", chart.ewma_limits_mm, &|name, value| level(name, limit, value)));
-        rows.push(Panel::new("weighted mean (µm)", means));
+        rows.push(Panel::new(format!("weighted mean ({small})"), means));
     } else {
-        rows.push(Panel { marks, ..Panel::new("deviation (µm)", singles) });
+        rows.push(Panel { marks, ..Panel::new(format!("deviation ({small})"), singles) });
     }
     text(
         panels_over(&View { title: Some(String::new()), ..View::default() }, "", PARTS, &rows)?,
@@ -170,21 +185,22 @@ fn text(svg: Vec<u8>, name: &str) -> Result<String, Failure> {
     Ok(element.replacen("<title></title>", &format!("<title>{name}</title>"), 1))
 }
 
-fn places(batch: &Batch) -> Markup {
+fn places(batch: &Batch, unit: Unit) -> Markup {
+    let small = unit.small_name();
     html! {
         table.places {
             thead { tr {
-                th { "place" } th { "parts" } th { "mean, µm" } th { "sigma, µm" } th { "next, µm" } th { "Cp" } th { "Cpk" } th { "Cpk, 95 %" }
+                th { "place" } th { "parts" } th { "mean, " (small) } th { "sigma, " (small) } th { "next, " (small) } th { "Cp" } th { "Cpk" } th { "Cpk, 95 %" }
             } }
             tbody {
                 @for p in &batch.places {
                     @let capable = p.chart.as_ref().and_then(|chart| chart.capability);
                     tr {
-                        td { (p.place.words(Unit::Millimetre)) }
+                        td { (p.place.words(unit)) }
                         td { (p.deviations_mm.len()) }
-                        td { @if let Some(chart) = &p.chart { (um(chart.mean_mm)) } }
-                        td { @if let Some(chart) = &p.chart { (um(chart.sigma_mm)) } }
-                        td { (um(p.next_mm.value)) " ± " (um(2.0 * p.next_mm.sigma)) }
+                        td { @if let Some(chart) = &p.chart { (um(chart.mean_mm, unit)) } }
+                        td { @if let Some(chart) = &p.chart { (um(chart.sigma_mm, unit)) } }
+                        td { (um(p.next_mm.value, unit)) " ± " (um(2.0 * p.next_mm.sigma, unit)) }
                         td { @if let Some(c) = capable { (format!("{:.2}", c.cp)) } }
                         td class=(if capable.is_none_or(|c| c.cpk >= 1.33) { "" } else { "no" }) { @if let Some(c) = capable { (format!("{:.2}", c.cpk)) } }
                         td { @if let Some(c) = capable { (format!("{:.2} to {:.2}", c.cpk_95[0], c.cpk_95[1])) } }
@@ -195,7 +211,8 @@ fn places(batch: &Batch) -> Markup {
     }
 }
 
-fn parts(batch: &Batch) -> Markup {
+fn parts(batch: &Batch, unit: Unit) -> Markup {
+    let small = unit.small_name();
     let pushed = batch.is_pushed();
     let event = |e: &Event| match e {
         Event::Cutter => "new cutter",
@@ -204,7 +221,7 @@ fn parts(batch: &Batch) -> Markup {
     };
     html! {
         table {
-            thead { tr { th { "part" } @if pushed { th { "force level" } } th { "radius lost, µm" } th { "datum X, µm" } th { "datum Y, µm" } th { "remarks" } } }
+            thead { tr { th { "part" } @if pushed { th { "force level" } } th { "radius lost, " (small) } th { "datum X, " (small) } th { "datum Y, " (small) } th { "remarks" } } }
             tbody {
                 @for s in &batch.states {
                     tr {
@@ -213,12 +230,12 @@ fn parts(batch: &Batch) -> Markup {
                             td { (format!("{:+.1} ± {:.1} %", 100.0 * s.force_level.value, 200.0 * s.force_level.sigma)) }
                         }
                         @for known in [&s.radius_lost_mm, &s.datum_mm[0], &s.datum_mm[1]] {
-                            td { (um(known.value)) " ± " (um(2.0 * known.sigma)) }
+                            td { (um(known.value, unit)) " ± " (um(2.0 * known.sigma, unit)) }
                         }
                         td {
                             @for e in &s.events { (event(e)) " " }
                             @if s.step { span.no { "does not go on as those before " } }
-                            @if s.wild > 0 { (s.wild) " wild readings" }
+                            @if s.wild > 0 { (counted(s.wild, "wild reading")) }
                         }
                     }
                 }

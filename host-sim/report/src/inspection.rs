@@ -4,7 +4,7 @@ use truepath_core::checksum::crc32;
 use truepath_core::probe::Contact;
 use truepath_correction::inspection::{Count, Coverage, Judgement, Verdict};
 use truepath_correction::surface::touched::TouchedSurface;
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Remark, Unit};
 use truepath_ground::units::mm;
 use truepath_job::feature::FeatureSummary;
 use truepath_job::job::Assumed;
@@ -65,7 +65,7 @@ pub struct InspectSummary {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub assumed: Vec<Assumed>,
     /// What the user should know.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Remark>,
     /// Each of several contours that was touched, of all of which the rest is said; absent for one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub contours: Vec<InspectSummary>,
@@ -73,7 +73,7 @@ pub struct InspectSummary {
 
 impl InspectSummary {
     /// Of several contours of a part and the judgement on all their points. `None` without any.
-    pub fn of_every(contours: Vec<Self>, judgement: &Judgement, warnings: Vec<String>) -> Option<Self> {
+    pub fn of_every(contours: Vec<Self>, judgement: &Judgement, warnings: Vec<Remark>) -> Option<Self> {
         let first = contours.first()?.clone();
         let points: usize = contours.iter().map(|one| one.points).sum();
         let mean = |of: fn(&Self) -> f64| {
@@ -126,7 +126,7 @@ pub fn inspect_summary(
     measurement: &Measurement,
     judgement: &Judgement,
     coverage: Coverage,
-    warnings: Vec<String>,
+    warnings: Vec<Remark>,
 ) -> InspectSummary {
     let contacts = &measurement.contacts;
     let part = &pass.job.part;

@@ -4,6 +4,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use truepath_correction::plan::choice::{Choice, Plan};
+use truepath_correction::plan::process::words;
 use truepath_correction::surface::wall::WallMap;
 use truepath_ground::diagnostics::Failure;
 
@@ -41,6 +42,8 @@ struct Section<'a> {
     wall: &'a PlannedWall<'a>,
     /// From 1.
     number: usize,
+    /// The unit of the program.
+    unit: Unit,
 }
 
 impl Section<'_> {
@@ -78,9 +81,9 @@ impl Section<'_> {
     }
 }
 
-/// The page of the plans of a program, wall by wall.
-pub fn planned_page(walls: &[PlannedWall<'_>], program: &str) -> String {
-    let sections: Vec<Section> = walls.iter().zip(1..).map(|(wall, number)| Section { wall, number }).collect();
+/// The page of the plans of a program, wall by wall, in its unit.
+pub fn planned_page(walls: &[PlannedWall<'_>], program: &str, unit: Unit) -> String {
+    let sections: Vec<Section> = walls.iter().zip(1..).map(|(wall, number)| Section { wall, number, unit }).collect();
     let shown: String = sections.iter().map(Section::rules).collect();
     html! {
         (DOCTYPE)
@@ -111,51 +114,54 @@ pub fn planned_page(walls: &[PlannedWall<'_>], program: &str) -> String {
 
 /// What is told of one wall.
 fn of_wall(section: &Section<'_>) -> Markup {
-    let plan = section.wall.plan;
+    let (plan, unit) = (section.wall.plan, section.unit);
+    let small = unit.small_name();
     html! {
-        p.verdict { (verdict(plan)) }
+        p.verdict { (verdict(plan, unit)) }
         p.soft {
-            "As programmed, one uncorrected pass: " (um(plan.as_programmed.profile_mm)) " µm at the worst place of the wall, mean over the height "
-            (um(plan.as_programmed.mean_mm)) " µm, " (format!("{:.2}", plan.minutes)) " min at feed."
+            "As programmed, one uncorrected pass: " (um(plan.as_programmed.profile_mm, unit)) " " (small) " at the worst place of the wall, mean over the height "
+            (um(plan.as_programmed.mean_mm, unit)) " " (small) ", " (format!("{:.2}", plan.minutes)) " min at feed."
         }
         (section.heading("Time against error"))
-        (section.scroll("Time against error", front(plan)))
+        (section.scroll("Time against error", front(plan, unit)))
         (section.scroll("Choices", choices(section)))
         (section.heading("The wall, unrolled"))
-        (legend(plan))
+        (legend(plan, unit))
         figure {
-            (section.scroll("The wall as programmed", wall(&plan.map, plan.tolerance_mm)))
+            (section.scroll("The wall as programmed", wall(&plan.map, plan.tolerance_mm, unit)))
             figcaption { "as programmed" }
         }
         @for (k, choice) in plan.choices.iter().enumerate() {
             figure class={ "choice w" (section.choice(k + 1)) } {
-                (section.scroll(&format!("The wall of choice {}", k + 1), wall(&choice.map, plan.tolerance_mm)))
+                (section.scroll(&format!("The wall of choice {}", k + 1), wall(&choice.map, plan.tolerance_mm, unit)))
                 figcaption {
-                    "choice " (k + 1) ": " (choice.process) ". What is left, " (choice.surface.worst_words(Unit::Millimetre))
+                    "choice " (k + 1) ": " (words(&choice.cuts, unit)) ". What is left, " (choice.surface.worst_words(unit))
                 }
             }
         }
     }
 }
 
-fn um(mm: f64) -> String {
-    let um = mm * 1e3;
-    if um < 99.95 { format!("{um:.1}") } else { format!("{um:.0}") }
+fn um(mm: f64, unit: Unit) -> String {
+    let small = unit.small(mm);
+    if mm < 0.09995 || unit == Unit::Inch { format!("{small:.1}") } else { format!("{small:.0}") }
 }
 
-fn verdict(plan: &Plan) -> String {
+fn verdict(plan: &Plan, unit: Unit) -> String {
+    let small = unit.small_name();
     let percent = format!("{:.0} %", plan.confidence * 100.0);
-    let tolerance = um(plan.tolerance_mm);
+    let tolerance = um(plan.tolerance_mm, unit);
     match (plan.recommended.and_then(|k| Some((k, plan.choices.get(k - 1)?))), plan.choices.last()) {
         (Some((k, choice)), _) => format!(
-            "Choice {k} holds ±{tolerance} µm at every height with {percent}, in {:.2} times the time: {}.",
-            choice.time_ratio, choice.process
+            "Choice {k} holds ±{tolerance} {small} at every height with {percent}, in {:.2} times the time: {}.",
+            choice.time_ratio,
+            words(&choice.cuts, unit)
         ),
         (None, Some(best)) => {
             let reach = best.surface.profile.profile_mm + 2.0 * best.surface.profile.sigma_mm;
             format!(
-                "No process holds ±{tolerance} µm at every height with {percent}. The best reaches {} µm.",
-                um(reach)
+                "No process holds ±{tolerance} {small} at every height with {percent}. The best reaches {} {small}.",
+                um(reach, unit)
             )
         }
         (None, None) => "No process keeps the limits of the job's [plan].".to_owned(),
@@ -163,11 +169,12 @@ fn verdict(plan: &Plan) -> String {
 }
 
 fn choices(section: &Section<'_>) -> Markup {
-    let plan = section.wall.plan;
+    let (plan, unit) = (section.wall.plan, section.unit);
+    let small = unit.small_name();
     html! {
         table {
             thead { tr {
-                th { "choice" } th { "time" } th { "worst error, µm" } th { "± 2 sigma" } th { "95 % of it, µm" } th { "within" } th { "force, N" } th { "passes" }
+                th { "choice" } th { "time" } th { "worst error, " (small) } th { "± 2 sigma" } th { "95 % of it, " (small) } th { "within" } th { "force, N" } th { "passes" }
             } }
             tbody {
                 @for (k, choice) in plan.choices.iter().enumerate() {
@@ -181,12 +188,12 @@ fn choices(section: &Section<'_>) -> Markup {
                             }
                         }
                         td { (format!("{:.2} ×", choice.time_ratio)) }
-                        td { (um(choice.surface.profile.profile_mm)) }
-                        td { (um(2.0 * choice.surface.profile.sigma_mm)) }
-                        td { (um(choice.surface.p95_mm)) }
+                        td { (um(choice.surface.profile.profile_mm, unit)) }
+                        td { (um(2.0 * choice.surface.profile.sigma_mm, unit)) }
+                        td { (um(choice.surface.p95_mm, unit)) }
                         td class=(if holds { "yes" } else { "no" }) { (format!("{:.0} %", 100.0 * choice.within_tolerance)) @if holds { " ✓" } @else { " ✗" } }
                         td { (format!("{:.0}", choice.force_n)) }
-                        td { label for=(section.choice(k + 1)) { (choice.process) } span.soft { " most of it: " (choice.limited_by) } }
+                        td { label for=(section.choice(k + 1)) { (words(&choice.cuts, unit)) } span.soft { " most of it: " (choice.limited_by) } }
                     }
                 }
             }
@@ -195,7 +202,7 @@ fn choices(section: &Section<'_>) -> Markup {
 }
 
 /// Time against error, with two standard deviations to either side.
-fn front(plan: &Plan) -> Markup {
+fn front(plan: &Plan, unit: Unit) -> Markup {
     const WIDTH: f64 = 720.0;
     const HEIGHT: f64 = 260.0;
     const LEFT: f64 = 56.0;
@@ -206,19 +213,23 @@ fn front(plan: &Plan) -> Markup {
     let x = |ratio: f64| LEFT + (ratio - 0.5) / (last - 0.25) * (WIDTH - LEFT - 10.0);
     let y = |error: f64| (HEIGHT - BELOW) - error / most * (HEIGHT - BELOW - 12.0);
     let at = |v: f64| format!("{v:.1}");
-    let step = round_step(most * 1e3 / 5.0);
-    let ticks = (0..).map(|k| f64::from(k) * step).take_while(|t| *t <= most * 1e3);
+    // The axis in thousandths of the unit.
+    let (top, per_mm) = (1e3 * unit.said(most), 1e3 * unit.said(1.0));
+    let step = round_step(top / 5.0);
+    let decimals = (-step.log10().floor()).max(0.0) as usize;
+    let ticks = (0..).map(|k| f64::from(k) * step).take_while(|t| *t <= top);
+    let axis = if unit == Unit::Inch { "worst error, 0.001 in" } else { "worst error, µm" };
     html! {
         svg viewBox={ "0 0 " (WIDTH) " " (HEIGHT) } role="img" aria-label="Machining time of the choices against their profile error" {
             @for tick in ticks {
-                line.axis x1=(LEFT) x2=(WIDTH - 10.0) y1=(at(y(tick / 1e3))) y2=(at(y(tick / 1e3))) {}
-                text x=(LEFT - 8.0) y=(at(y(tick / 1e3) + 4.0)) text-anchor="end" { (tick) }
+                line.axis x1=(LEFT) x2=(WIDTH - 10.0) y1=(at(y(tick / per_mm))) y2=(at(y(tick / per_mm))) {}
+                text x=(LEFT - 8.0) y=(at(y(tick / per_mm) + 4.0)) text-anchor="end" { (format!("{tick:.decimals$}")) }
             }
             @for whole in 1..=(last as u32) {
                 text x=(at(x(f64::from(whole)))) y=(HEIGHT - BELOW + 18.0) text-anchor="middle" { (whole) " ×" }
             }
             text x=(WIDTH / 2.0) y=(HEIGHT - 4.0) text-anchor="middle" { "time over that of one pass" }
-            text x="12" y=(at(HEIGHT / 2.0 - 20.0)) text-anchor="middle" transform={ "rotate(-90 12 " (HEIGHT / 2.0 - 20.0) ")" } { "worst error, µm" }
+            text x="12" y=(at(HEIGHT / 2.0 - 20.0)) text-anchor="middle" transform={ "rotate(-90 12 " (HEIGHT / 2.0 - 20.0) ")" } { (axis) }
             line.limit x1=(LEFT) x2=(WIDTH - 10.0) y1=(at(y(plan.tolerance_mm))) y2=(at(y(plan.tolerance_mm))) {}
             @for (k, choice) in plan.choices.iter().enumerate() {
                 @let (mean, two) = (choice.surface.profile.profile_mm, 2.0 * choice.surface.profile.sigma_mm);
@@ -236,8 +247,8 @@ fn round_step(least: f64) -> f64 {
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|step| *step >= least * 0.999).unwrap_or(power)
 }
 
-fn legend(plan: &Plan) -> Markup {
-    let edge = |at: usize| um(plan.tolerance_mm * BOUNDS[at]);
+fn legend(plan: &Plan, unit: Unit) -> Markup {
+    let edge = |at: usize| um(plan.tolerance_mm * BOUNDS[at], unit);
     let range = |class: usize| match class {
         0 => format!("below {}", edge(0)),
         6 => format!("above {}", edge(5)),
@@ -246,7 +257,7 @@ fn legend(plan: &Plan) -> Markup {
     html! {
         div.legend {
             @for (class, meaning) in CLASSES.iter().enumerate() {
-                span title=(meaning) { svg viewBox="0 0 10 8" aria-hidden="true" { rect class={ "k" (class) } width="10" height="8" {} } " " (range(class)) " µm" }
+                span title=(meaning) { svg viewBox="0 0 10 8" aria-hidden="true" { rect class={ "k" (class) } width="10" height="8" {} } " " (range(class)) " " (unit.small_name()) }
             }
         }
     }
@@ -257,7 +268,7 @@ fn class_of(error: f64, tolerance: f64) -> usize {
 }
 
 /// Arc length × height; neighbours of one class are one rectangle.
-fn wall(map: &WallMap, tolerance: f64) -> Markup {
+fn wall(map: &WallMap, tolerance: f64, unit: Unit) -> Markup {
     const WIDTH: f64 = 720.0;
     const LEFT: f64 = 46.0;
     const TALL: f64 = 110.0;
@@ -289,11 +300,11 @@ fn wall(map: &WallMap, tolerance: f64) -> Markup {
                     y=(format!("{:.2}", 2.0 + (rows - 1 - row) as f64 * tall)) height=(format!("{:.2}", tall + 0.05)) {}
             }
             rect.frame x=(LEFT) y="2" width=(WIDTH - LEFT - 4.0) height=(TALL) {}
-            text x=(LEFT - 6.0) y="13" text-anchor="end" { (format!("{height:.0}")) }
+            text x=(LEFT - 6.0) y="13" text-anchor="end" { (format!("{:.0}", unit.of(height))) }
             text x=(LEFT - 6.0) y=(TALL) text-anchor="end" { "0" }
-            text x="12" y=(TALL / 2.0) text-anchor="middle" transform={ "rotate(-90 12 " (TALL / 2.0) ")" } { "height, mm" }
-            text x=(LEFT) y=(TALL + 18.0) { (format!("{first:.0}")) }
-            text x=(WIDTH - 4.0) y=(TALL + 18.0) text-anchor="end" { (format!("{last:.0}")) " mm" }
+            text x="12" y=(TALL / 2.0) text-anchor="middle" transform={ "rotate(-90 12 " (TALL / 2.0) ")" } { "height, " (unit.name()) }
+            text x=(LEFT) y=(TALL + 18.0) { (format!("{:.0}", unit.of(*first))) }
+            text x=(WIDTH - 4.0) y=(TALL + 18.0) text-anchor="end" { (format!("{:.0}", unit.of(*last))) " " (unit.name()) }
             text x=((WIDTH + LEFT) / 2.0) y=(TALL + 18.0) text-anchor="middle" { "along the contour" }
         }
     }

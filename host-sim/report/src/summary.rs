@@ -1,7 +1,7 @@
 //! `summary.json` of `simulate`.
 
 use truepath_correction::remarks::said_of_every;
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Remark, Unit};
 use truepath_ground::units::mm;
 use truepath_job::feature::FeatureSummary;
 use truepath_job::job::Assumed;
@@ -59,7 +59,7 @@ pub struct SimulateSummary {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub assumed: Vec<Assumed>,
     /// What the user should know.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Remark>,
     /// Each of several contours, of which the rest is the worst or the sum; absent for one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub contours: Vec<SimulateSummary>,
@@ -99,7 +99,7 @@ impl SimulateSummary {
 }
 
 /// Makes the summary of `simulate`.
-pub fn simulate_summary(pass: &Pass, by: &'static str, trace: &[TraceRow], warnings: Vec<String>) -> SimulateSummary {
+pub fn simulate_summary(pass: &Pass, by: &'static str, trace: &[TraceRow], warnings: Vec<Remark>) -> SimulateSummary {
     let most = |f: fn(&TraceRow) -> f64| trace.iter().map(f).filter(|v| v.is_finite()).fold(0.0, f64::max);
     let finite: Vec<f64> = trace.iter().map(|r| r.error_mm).filter(|e| e.is_finite()).collect();
     SimulateSummary {

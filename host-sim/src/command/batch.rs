@@ -8,8 +8,9 @@ use truepath_batch::batch::{Alarm, Batch, Cause, Request};
 use truepath_batch::codes::{Q011, Q012};
 use truepath_batch::series::{Event, Place, Reading, Series};
 use truepath_core::probe::{CutWith, Rejected};
+use truepath_ground::count::counted;
 use truepath_ground::diagnostics::{Failure, Source};
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Remark, Unit};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::{float, mm, rounded};
 use truepath_job::job::{PartFlags, Said};
@@ -72,7 +73,7 @@ pub struct Report {
     /// The page.
     pub page: PathBuf,
     /// What the user should know.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Remark>,
 }
 
 /// Follows a batch and prints how it stands; what asks for action ends with exit code 3.
@@ -91,7 +92,7 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
 
 fn words(report: &Report) -> String {
     let batch = &report.batch;
-    let mut text = format!("{} parts touched, {} to {}\n", batch.touched, batch.parts[0], batch.parts[1]);
+    let mut text = format!("{} touched, {} to {}\n", counted(batch.touched, "part"), batch.parts[0], batch.parts[1]);
     for said in batch.words(report.unit) {
         text += &format!("{said}\n");
     }
@@ -140,12 +141,12 @@ pub fn run(options: &Options) -> Result<Report, Failure> {
     let tolerance = job.part.tolerance.map(|t| [mm(t.lower), mm(t.upper)]);
     let walls: Vec<Pass> = Pass::every(job)?.into_iter().map(|pass| pass.cut_with(CutWith::Anything)).collect();
     let several = walls.len() > 1;
-    let mut warnings: Vec<String> = walls.iter().flat_map(|pass| pass.warnings.clone()).collect();
+    let mut warnings: Vec<Remark> = walls.iter().flat_map(|pass| pass.warnings.clone()).collect();
     let table = Source::read(&options.parts)?;
     let entries = entries(&table, options.parts.parent().unwrap_or(Path::new("")))?;
     let pushed = options.from.as_ref().map(|from| deflections(from, &walls, several, &mut warnings)).transpose()?;
     if pushed.is_none() {
-        warnings.push("without --from DIR, the folder of the correction the parts were cut with, force level and cutter size cannot be told apart".to_owned());
+        warnings.push("without --from DIR, the folder of the correction the parts were cut with, force level and cutter size cannot be told apart".into());
     }
     let folder = OutputFolder::create(&options.output, options.force, FILES)?;
     let mut series = Series::default();
@@ -164,10 +165,10 @@ pub fn run(options: &Options) -> Result<Report, Failure> {
             noise = noise.max(mm(measurement.noise));
             let aside = measurement.rejected.iter().filter(|aside| aside.reason != Rejected::Superseded).count();
             if aside > 0 && !measurement.contacts.is_empty() {
-                warnings.push(format!(
-                    "part {}: {aside} readings are not of this wall; truepath inspect says why",
-                    entry.number
-                ));
+                warnings.push(
+                    format!("part {}: {aside} readings are not of this wall; truepath inspect says why", entry.number)
+                        .into(),
+                );
             }
             readings.extend(of_wall(pass, measurement, several, pushed.as_ref()));
         }
@@ -189,7 +190,7 @@ pub fn run(options: &Options) -> Result<Report, Failure> {
     let name = walls.first().map_or_else(String::new, |pass| {
         pass.job.part.names.name.clone().unwrap_or_else(|| pass.program.name().to_owned())
     });
-    folder.write("batch.html", batch_page(&batch, &name)?.as_bytes())?;
+    folder.write("batch.html", batch_page(&batch, &name, unit)?.as_bytes())?;
     let (words, next) = (batch.words(Unit::Millimetre), next(&batch, options));
     let report = Report { unit, words, next, batch, page: options.output.join("batch.html"), warnings };
     folder.write("summary.json", &json(&report)?)?;
@@ -233,17 +234,16 @@ fn deflections(
     from: &Path,
     walls: &[Pass],
     several: bool,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Remark>,
 ) -> Result<BTreeMap<String, Vec<(f64, f64)>>, Failure> {
     let mut all = BTreeMap::new();
     for pass in walls {
         let table = from.join(format!("{}correction.csv", contour_place(pass, several)));
         if several && !truepath_ground::files::exists(&table) {
-            warnings.push(format!(
-                "{} is not there: how far {} is pushed is not known",
-                table.display(),
-                contour_name(pass)
-            ));
+            warnings.push(
+                format!("{} is not there: how far {} is pushed is not known", table.display(), contour_name(pass))
+                    .into(),
+            );
             continue;
         }
         let rows = read_correction(&Source::read(&table)?, None)?;

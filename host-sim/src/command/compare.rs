@@ -8,7 +8,7 @@ use truepath_correction::correct::as_its_points_tell;
 use truepath_correction::correction::identify;
 use truepath_correction::surface::expected::Surfaces;
 use truepath_ground::diagnostics::{Failure, Source};
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Remark, Unit};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::{float, mm};
 use truepath_job::job::Said;
@@ -141,7 +141,7 @@ pub struct CompareSummary {
     /// One line a law.
     pub laws: Vec<Row>,
     /// What the user should know.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Remark>,
 }
 
 /// Compares all laws, and writes table and picture where a folder is named. `progress` is told the share done, 0…1.
@@ -178,7 +178,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CompareSu
     let mut laws: Vec<Row> = Vec::new();
     for (candidate, walls) in candidates.iter().zip(&left) {
         let none = laws.first().and_then(|none| none.max_error_mm);
-        laws.push(row(candidate, walls.as_ref().map_err(String::as_str), none, trim_mm, clamp));
+        laws.push(row(candidate, walls.as_ref().map_err(String::as_str), none, trim_mm, (clamp, pass.unit())));
     }
     let mut warnings = pass.warnings.clone();
     warnings.extend(measurement.remarks(&file));

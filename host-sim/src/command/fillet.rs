@@ -10,7 +10,7 @@ use truepath_correction::fillet::{Corner, rewritten};
 use truepath_correction::summary::name_with;
 use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError};
-use truepath_ground::length::{self, Unit};
+use truepath_ground::length::{self, Remark, Unit};
 use truepath_ground::output::OutputFolder;
 use truepath_ground::units::{mm, nm, rounded};
 use truepath_job::job::JobFile;
@@ -57,7 +57,7 @@ pub struct Report {
     #[serde(skip)]
     pub unit: Unit,
     /// What the user should know.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Remark>,
 }
 
 /// Writes, and prints what to do next.
@@ -111,19 +111,19 @@ pub fn run(options: &Options) -> Result<Report, Failure> {
         return Err(InputError::new(C001, found, format!("{least} to {most} {name}"), help).into());
     }
     let (written, corners, said) = rewritten(&passes, nm(radius))?;
-    let mut warnings: Vec<String> = Vec::new();
+    let mut warnings: Vec<Remark> = Vec::new();
     for said in contours.iter().flat_map(|contour| &contour.warnings) {
         if !warnings.contains(said) {
             warnings.push(said.clone());
         }
     }
-    warnings.extend(said);
-    warnings.extend(corners.iter().filter_map(|corner| beside(corner, radius, pass.unit())));
+    warnings.extend(said.into_iter().map(Remark::from));
+    warnings.extend(corners.iter().filter_map(|corner| beside(corner, radius, pass.unit()).map(Remark::from)));
     let name = name_with(pass.program.name(), "filleted");
     let side = pass.core.setup.wall;
     let wall = passes.iter().all(|other| other.core.setup.wall == side).then_some(side);
     if wall.is_none() && pass.job.numbers.wall.is_none() {
-        warnings.push("the contours have their walls on different sides, which G41 and G42 said that are no longer in the program: write wall into a [[feature]] for each of them in filleted.toml".to_owned());
+        warnings.push("the contours have their walls on different sides, which G41 and G42 said that are no longer in the program: write wall into a [[feature]] for each of them in filleted.toml".into());
     }
     let folder = OutputFolder::create(&options.output, options.force, &["*.filleted*", JOB])?;
     let said = "The program with arcs on its sharp inside corners, written by truepath fillet";

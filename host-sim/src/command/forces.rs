@@ -10,6 +10,7 @@ use truepath_forces::fit::Along;
 use truepath_forces::page::page;
 use truepath_forces::written::forces_toml;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Unit;
 use truepath_ground::output::{OutputFolder, json};
 
 use crate::terminal::Terminal;
@@ -39,27 +40,28 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
     folder.write("report.html", page(&analysis)?.as_bytes())?;
     folder.write("summary.json", &json(&analysis)?)?;
     folder.commit()?;
-    terminal.warn_all(&analysis.warnings);
+    let unit = description.unit;
+    analysis.warnings.iter().for_each(|warning| terminal.warn(&unit.retold(warning)));
     terminal.tell(&analysis, || {
         let file = options.output.join("forces.toml");
         let next =
             format!("next: in a job, [force] with from = \"{}\" in place of material or coefficients", file.display());
-        format!("{}written to {}\n{next}\n", words(&analysis), options.output.display())
+        format!("{}written to {}\n{next}\n", words(&analysis, unit), options.output.display())
     })
 }
 
-fn words(analysis: &Analysis) -> String {
+fn words(analysis: &Analysis, unit: Unit) -> String {
     let mut text = String::new();
     if let Some(axes) = &analysis.axes {
         let _ = writeln!(text, "columns taken as {axes}");
     }
     for cut in &analysis.cuts {
-        let _ = write!(text, "{}: {:.4} mm per tooth", cut.name, cut.cut.feed_per_tooth_mm);
+        let _ = write!(text, "{}: {:.4} {} per tooth", cut.name, unit.of(cut.cut.feed_per_tooth_mm), unit.name());
         if cut.revolutions > 0 {
             let _ = write!(text, ", {} revolutions", cut.revolutions);
         }
         for mean in &cut.means {
-            let (name, unit) = match mean.measured.along {
+            let (name, of) = match mean.measured.along {
                 Along::Feed => ("feed", "N"),
                 Along::Across => ("across", "N"),
                 Along::Torque => ("torque", "N·m"),
@@ -67,7 +69,7 @@ fn words(analysis: &Analysis) -> String {
             let off = 100.0 * (mean.law / mean.measured.value - 1.0);
             let _ = write!(
                 text,
-                "; {name} {:.2} ± {:.2} {unit}, {} {:.2} ({off:+.1} %)",
+                "; {name} {:.2} ± {:.2} {of}, {} {:.2} ({off:+.1} %)",
                 mean.measured.value,
                 mean.measured.sigma,
                 if cut.fitted { "laws" } else { "predicted" },
@@ -75,7 +77,8 @@ fn words(analysis: &Analysis) -> String {
             );
         }
         if let Some(shape) = cut.shape.as_ref().filter(|s| s.believed) {
-            let _ = write!(text, "; runout {:.4} ± {:.4} mm", shape.runout_mm, shape.runout_sigma_mm);
+            let [runout, sigma] = [shape.runout_mm, shape.runout_sigma_mm].map(|mm| unit.of(mm));
+            let _ = write!(text, "; runout {runout:.4} ± {sigma:.4} {}", unit.name());
         }
         text.push('\n');
     }

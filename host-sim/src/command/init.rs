@@ -8,8 +8,7 @@ use clap::Args;
 use truepath_ground::codes::C001;
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{Failure, InputError, Source, visible};
-use truepath_ground::document;
-use truepath_ground::length::Unit;
+use truepath_ground::length::{self, Remark, Unit};
 use truepath_ground::output::OutputFile;
 use truepath_ground::units::mm;
 use truepath_job::codes::J042;
@@ -85,7 +84,7 @@ struct Report {
     /// The command to go on with.
     next: String,
     /// What the user should know.
-    warnings: Vec<String>,
+    warnings: Vec<Remark>,
 }
 
 /// A question.
@@ -97,10 +96,40 @@ struct Question {
     keys: Vec<String>,
     /// What is asked.
     text: String,
+    /// The unit of the program, in which it is asked and answered on a terminal.
+    #[serde(skip)]
+    unit: Unit,
     /// What an empty answer takes; `None` where nothing can be taken.
     proposal: Option<String>,
     /// The words one can answer with, where there are only some.
     choices: Vec<&'static str>,
+}
+
+impl Question {
+    /// Its text and what an empty answer takes, in the unit of the program.
+    fn said(&self) -> (String, String) {
+        let usual = self.proposal.as_ref().map(|proposal| proposal.trim_matches('"'));
+        let inches = |number: &str| {
+            let is_length = self.unit == Unit::Inch && self.keys.iter().any(|key| length::in_inches(key).is_some());
+            let mm: f64 = number.parse().ok().filter(|_| is_length)?;
+            Some(format!("{:.3}in", self.unit.of(mm)))
+        };
+        let said = |number: &str| inches(number).unwrap_or_else(|| number.to_owned());
+        let mut text = self.unit.keys(&self.text).into_owned();
+        if let Some((before, number)) = text.rsplit_once("(usual: ") {
+            text = format!("{before}(usual: {})", said(number.trim_end_matches(')')));
+        }
+        (text, usual.map_or_else(String::new, |usual| format!(" [{}]", said(usual))))
+    }
+
+    /// An answer for one of its keys: where the key was asked in inches, so is a number without a unit.
+    fn answered(&self, key: &str, answer: &str) -> (String, String) {
+        let is_bare = answer.parse::<f64>().is_ok();
+        match length::in_inches(key).filter(|_| self.unit == Unit::Inch && is_bare) {
+            Some(key) => in_millimetres(key, answer),
+            None => in_millimetres(key.to_owned(), answer),
+        }
+    }
 }
 
 /// The words that some keys take.
@@ -123,7 +152,7 @@ struct Asked {
     /// The contour in words.
     facts: Vec<String>,
     /// What the user should know.
-    warnings: Vec<String>,
+    warnings: Vec<Remark>,
 }
 
 /// Asks and writes.
@@ -176,8 +205,14 @@ fn run(options: &Options, terminal: &Terminal) -> Result<Report, Failure> {
         Some(_) => "",
         None => " --dialect haas|fanuc|linuxcnc|grbl",
     };
-    let next = format!("truepath probe {}{dialect} -o verify.nc", options.output.display());
+    // In conversational language no verification program is written: the places are listed.
+    let lists = draft.probe_control.is_none() && passes.first().is_some_and(|p| p.job.numbers.dialect.is_klartext());
+    let next = match lists {
+        true => format!("truepath probe {}", options.output.display()),
+        false => format!("truepath probe {}{dialect} -o verify.nc", options.output.display()),
+    };
     let Draft { unit, entries, contours, chosen, facts, mut warnings, .. } = draft;
+    warnings.extend(options.set.iter().filter_map(|text| doubtful_unit(text, unit)));
     for said in passes.into_iter().flat_map(|pass| pass.warnings) {
         if !said.starts_with("assumed ") && !warnings.contains(&said) {
             warnings.push(said);
@@ -216,7 +251,7 @@ fn given(set: &[String]) -> Result<BTreeMap<String, String>, InputError> {
 /// A length that was said in inches (`allowance=0.02in`, `tool.diameter_in=0.5`) in millimetres, as the draft reckons.
 fn in_millimetres(key: String, value: &str) -> (String, String) {
     let number = ["inch", "in", "\""].iter().find_map(|unit| value.strip_suffix(unit));
-    let (key, number) = match (document::in_millimetres(&key), number.filter(|_| document::in_inches(&key).is_some())) {
+    let (key, number) = match (length::in_millimetres(&key), number.filter(|_| length::in_inches(&key).is_some())) {
         (Some(key), number) => (key, number.or(Some(value))),
         (None, number) => (key, number),
     };
@@ -224,6 +259,17 @@ fn in_millimetres(key: String, value: &str) -> (String, String) {
         Some(inches) => (key, mm(inches.of_inches().as_mm()).to_string()),
         None => (key, value.to_owned()),
     }
+}
+
+/// A warning of a length without a unit, by a short name, for a program in inches.
+fn doubtful_unit(set: &str, unit: Unit) -> Option<Remark> {
+    let (name, value) = set.split_once('=').map(|(name, value)| (name.trim(), value.trim()))?;
+    let (_, keys) = SHORT.iter().find(|(short, _)| *short == name).filter(|_| unit == Unit::Inch)?;
+    let mm: f64 = value.parse().ok().filter(|_| keys.iter().any(|key| length::in_inches(key).is_some()))?;
+    let inches = unit.of(mm);
+    Some(format!(
+        "the program is in inches, and --set {name}={value} says millimetres, {inches} in: {name}={value}in would be inches"
+    ).into())
 }
 
 /// The short name of a key.
@@ -246,6 +292,7 @@ fn questions(draft: &Draft, given: &BTreeMap<String, String>) -> Vec<Question> {
             name: "contour".to_owned(),
             keys: vec!["contour".to_owned()],
             text,
+            unit: draft.unit,
             proposal,
             choices: Vec::new(),
         });
@@ -270,7 +317,7 @@ fn questions(draft: &Draft, given: &BTreeMap<String, String>) -> Vec<Question> {
             _ => format!("{key}: {}", entry.why),
         };
         let choices = choices(&name);
-        list.push(Question { name, keys, text, proposal, choices });
+        list.push(Question { name, keys, text, unit: draft.unit, proposal, choices });
     }
     list
 }
@@ -278,8 +325,8 @@ fn questions(draft: &Draft, given: &BTreeMap<String, String>) -> Vec<Question> {
 /// Questions, each as the `--set` that answers it.
 fn listed(open: &[Question]) -> String {
     let one = |q: &Question| {
-        let usual = q.proposal.as_ref().map_or_else(String::new, |p| format!(" [{}]", p.trim_matches('"')));
-        format!("\n  --set {}=…{usual}   {}", q.name, q.text.replace('\n', "\n    "))
+        let (text, usual) = q.said();
+        format!("\n  --set {}=…{usual}   {}", q.name, text.replace('\n', "\n    "))
     };
     open.iter().map(one).collect()
 }
@@ -306,7 +353,7 @@ fn answered(program: &Source, given: &mut BTreeMap<String, String>) -> Result<Dr
             continue;
         };
         let mut tried = given.clone();
-        tried.extend(question.keys.iter().map(|key| in_millimetres(key.clone(), &answer)));
+        tried.extend(question.keys.iter().map(|key| question.answered(key, &answer)));
         // A wrong answer is asked again, with what is wrong about it.
         match Draft::of(program, &tried).and_then(|draft| draft.check().map(|()| draft)) {
             Ok(made) => {
@@ -323,8 +370,8 @@ fn answered(program: &Source, given: &mut BTreeMap<String, String>) -> Result<Dr
 /// Asks once; `None` takes the proposal.
 fn ask(question: &Question) -> Result<Option<String>, Failure> {
     loop {
-        let proposal = question.proposal.as_ref().map_or_else(String::new, |p| format!(" [{}]", p.trim_matches('"')));
-        write_error(&format!("{}{proposal}: ", visible_text(&question.text)));
+        let (text, proposal) = question.said();
+        write_error(&format!("{}{proposal}: ", visible_text(&text)));
         let mut answer = String::new();
         let read = std::io::stdin().lock().read_line(&mut answer);
         let length = read.map_err(|e| InputError::unreadable(FilePath::new("the terminal"), &e))?;

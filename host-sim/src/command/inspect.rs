@@ -11,8 +11,9 @@ use truepath_correction::inspection::{
 use truepath_correction::misfit::noticed;
 use truepath_correction::remarks::said_of_every;
 use truepath_correction::warnings::misread;
+use truepath_ground::count::counted;
 use truepath_ground::diagnostics::Failure;
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Remark, Unit};
 use truepath_ground::output::{OutputFolder, json, write_file};
 use truepath_ground::units::mm;
 use truepath_job::feature::listing;
@@ -141,8 +142,8 @@ fn words(inspection: &Inspection) -> String {
     }
     let s = &inspection.summary;
     text += &format!(
-        "\n{} points; material left is positive\nmean {:.4} {name} (a wear offset removes it), largest {:.d$}, smallest {:.d$}, rms {:.4}, spread over height {:.4} {name}\n",
-        s.points,
+        "\n{}; material left is positive\nmean {:.4} {name} (a wear offset removes it), largest {:.d$}, smallest {:.d$}, rms {:.4}, spread over height {:.4} {name}\n",
+        counted(s.points, "point"),
         unit.of(s.mean_error_mm),
         unit.of(s.max_error_mm),
         unit.of(s.min_error_mm),
@@ -242,14 +243,14 @@ struct Inspected<'a> {
     in_inches: Judgement,
     summary: InspectSummary,
     /// Warnings without one for every reading set aside.
-    told: Vec<String>,
+    told: Vec<Remark>,
     contacts: Vec<Point>,
 }
 
 fn one<'a>(pass: &'a Pass, measurement: &'a Measurement, several: bool) -> Result<Inspected<'a>, Failure> {
     let mut misreadings = misread(pass, false, &measurement.contacts);
     misreadings.extend(noticed(pass, measurement).filter(|_| !measurement.taken_as_is));
-    let told: Vec<String> = pass.warnings.iter().chain(&misreadings).cloned().collect();
+    let told: Vec<Remark> = pass.warnings.iter().chain(&misreadings).cloned().collect();
     let warnings = [pass.warnings.clone(), measurement.remarks(&measurement.source), misreadings].concat();
     let (part, contour) = (&pass.job.part, pass.path_contour());
     let rule = part.tolerance.map(|tolerance| Rule { tolerance, uncertainty: part.uncertainty });
@@ -319,7 +320,7 @@ fn together(inspected: &[Inspected<'_>], measured: &[(Pass, Measurement)]) -> Re
         if own.is_none() {
             let reasons = measurement.rejected.iter().map(|r| &r.reason);
             aside = aside.and(SetAside::of(reasons, pass.job.numbers.tool.diameter));
-            warnings.push(format!("{name} was not touched: nothing is said of it"));
+            warnings.push(format!("{name} was not touched: nothing is said of it").into());
         }
         let said = own.map_or_else(|| measurement.remarks(&measurement.source), |wall| wall.summary.warnings.clone());
         all_said.push((name.clone(), said));

@@ -14,6 +14,8 @@ pub mod demo;
 #[cfg(not(target_family = "wasm"))]
 pub mod device;
 pub mod fillet;
+#[cfg(not(target_family = "wasm"))]
+pub mod firmware;
 pub mod forces;
 #[cfg(not(target_family = "wasm"))]
 pub mod hil;

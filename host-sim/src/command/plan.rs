@@ -15,9 +15,10 @@ use truepath_correction::summary::name_with;
 use truepath_correction::surface::wall::WallFigures;
 use truepath_correction::verification::{self, ProbeDialect, Settings, plan_every};
 use truepath_ground::codes::{C001, J004, J008};
+use truepath_ground::count::counted;
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Remark, Unit};
 use truepath_ground::limits::Limits;
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::{float, mm};
@@ -25,11 +26,13 @@ use truepath_job::job::{JobFile, ProbeFlags, ROUTES, Route, Which, one_of};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_job::signing::SignFlags;
+use truepath_report::next::shown;
 use truepath_report::{PlannedWall, planned_map_csv, planned_page};
 
 use super::begin::BeginFlags;
 use super::correction_files::{contour_name, contour_place};
-use super::plan_files::{FILES, MAP, PLAN_HISTORY, PROBED, PROGRAM, REPORT, VERIFY};
+pub use super::plan_files::{FILES, PROGRAM};
+use super::plan_files::{MAP, PLAN_HISTORY, PROBED, REPORT, VERIFY};
 use super::probe::log_name;
 use crate::terminal::Terminal;
 
@@ -97,7 +100,7 @@ pub struct PlanSummary {
     /// The choices whose program was written.
     pub written: Option<Written>,
     /// What the user should know.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Remark>,
 }
 
 /// The plan of one of several contours.
@@ -147,7 +150,7 @@ impl Written {
     pub(super) fn of_images(&self) -> String {
         let Some(last) = self.images.last() else { return String::new() };
         let folder = last.image.parent().unwrap_or(FilePath::new("")).display();
-        format!("images of {} passes in {folder}: each is armed by M160\n", self.images.len())
+        format!("images of {} in {folder}: each is armed by M160\n", counted(self.images.len(), "pass"))
     }
 }
 
@@ -180,10 +183,10 @@ pub struct WrittenChoice {
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
     let summary = terminal.watch("planning", |progress| run(options, progress))?;
     terminal.warn_all(&summary.warnings);
-    terminal.tell(&summary, || words(&summary))
+    terminal.tell(&summary, || words(&summary, options))
 }
 
-fn words(summary: &PlanSummary) -> String {
+fn words(summary: &PlanSummary, options: &Options) -> String {
     let unit = summary.unit;
     let mut text = summary.plan.iter().map(|plan| table(plan, unit)).collect::<String>();
     for one in &summary.contours {
@@ -197,19 +200,20 @@ fn words(summary: &PlanSummary) -> String {
             let numbers: Vec<String> =
                 written.choice.iter().chain(&written.contours).map(|one| one.choice.to_string()).collect();
             text += &format!(
-                "\nchoice {} written: {}, {} passes\n",
+                "\nchoice {} written: {}, {}\n",
                 numbers.join(", "),
                 written.program.display(),
-                written.passes()
+                counted(written.passes(), "pass")
             );
             text += &written.of_images();
             let with = written.verify.as_ref().map_or_else(String::new, |verify| format!(" with {}", verify.display()));
             let then = if written.learns {
-                "give the points to truepath learn --from the folder"
+                let from = options.output.as_deref().map_or_else(|| "DIR".to_owned(), shown);
+                format!("learn {} --probe FILE --from {from} -o DIR", shown(&options.job))
             } else {
-                "see what truepath inspect says"
+                format!("inspect {} --probe FILE", shown(&options.job))
             };
-            text += &format!("next: mill a new part with it, touch its wall{with}, and {then}\n");
+            text += &format!("next: mill a new part with it, touch its wall{with}, and\n  truepath {then}\n");
         }
         None if summary
             .plan
@@ -333,8 +337,10 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
         let share = 0.8 / planners.len() as f64;
         let plan =
             search(planner, &Wanted { limits, ..wanted }, &mut |done| progress(0.1 + (k as f64 + done) * share))?;
-        let beyond = beyond_what_shows(&plan, pass).into_iter().chain(pushed_far(&plan, pass));
-        let beyond = beyond.chain(deeper_than_apart(pass)).collect();
+        let beyond = pass.unit().remarks(|unit| {
+            let beyond = beyond_what_shows(&plan, pass, unit).into_iter().chain(pushed_far(&plan, pass, unit));
+            beyond.chain(deeper_than_apart(pass, unit))
+        });
         said.push([pass.warnings.clone(), points.remarks(&file), own, beyond].concat());
         plans.push(plan);
     }
@@ -352,7 +358,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
             contour_name(pass),
             lines.first,
             lines.last
-        ));
+        ).into());
         warnings.extend(points.remarks(&file));
     }
     let several = measured.len() > 1 || !untouched.is_empty();
@@ -390,12 +396,13 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
         written = Some(Written { learns, ..all });
     }
     let name = measured.first().map(|(pass, _)| program_name(pass)).unwrap_or_default();
+    let unit = measured.first().map(|(pass, _)| pass.unit()).unwrap_or_default();
     let shown: Vec<PlannedWall> = measured
         .iter()
         .zip(&plans)
         .map(|((pass, _), plan)| PlannedWall { name: several.then(|| contour_name(pass)), plan })
         .collect();
-    folder.write(REPORT, planned_page(&shown, &name).as_bytes())?;
+    folder.write(REPORT, planned_page(&shown, &name, unit).as_bytes())?;
     let summary = summary(several, &measured, plans, written, warnings);
     folder.write("summary.json", &json(&summary)?)?;
     folder.commit()?;
@@ -403,47 +410,55 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
 }
 
 /// What is said of a tolerance narrower than what the probe can show, or than what is known of the machine.
-fn beyond_what_shows(plan: &Plan, pass: &Pass) -> Option<String> {
+fn beyond_what_shows(plan: &Plan, pass: &Pass, unit: Unit) -> Option<String> {
+    let name = unit.name();
     let touch = 2.0 * mm(pass.job.numbers.probe?.noise);
     let machine = plan.choices.iter().map(|choice| 2.0 * choice.surface.profile.sigma_mm).fold(f64::INFINITY, f64::min);
     let floor = if machine.is_finite() { touch.max(machine) } else { touch };
     (plan.tolerance_mm < floor).then(|| {
         let known = if machine.is_finite() {
-            format!(", and what the points leave open of the machine is {machine:.4} mm at best")
+            format!(", and what the points leave open of the machine is {:.4} {name} at best", unit.of(machine))
         } else {
             String::new()
         };
         format!(
-            "±{} mm is less than can be shown: one touch is known to {touch:.4} mm (2 sigma, probe.noise_mm){known}; plan for ±{floor:.4} mm \
-             or more, or touch more places with a better probe",
-            plan.tolerance_mm
+            "±{} {name} is less than can be shown: one touch is known to {:.4} {name} (2 sigma, probe.noise_mm){known}; plan for \
+             ±{:.4} {name} or more, or touch more places with a better probe",
+            unit.of(plan.tolerance_mm),
+            unit.of(touch),
+            unit.of(floor)
         )
     })
 }
 
 /// What is said where the cutter is pushed off the wall by more than half of what it is to take: there its engagement hangs on
 /// the push itself, and plans were not tried.
-fn pushed_far(plan: &Plan, pass: &Pass) -> Option<String> {
+fn pushed_far(plan: &Plan, pass: &Pass, unit: Unit) -> Option<String> {
     let (pushed, allowance) = (plan.as_programmed.profile_mm, mm(pass.core.setup.allowance));
     (2.0 * pushed > allowance).then(|| {
         format!(
-            "as programmed the wall is off by {pushed:.3} mm of an allowance of {allowance} mm: beyond half of it predictions were not tried, and \
-             one there was wrong by more than two standard deviations; rough the part closer to the wall, or judge the first planned part with truepath inspect"
+            "as programmed the wall is off by {:.3} {name} of an allowance of {} {name}: beyond half of it predictions were not tried, and \
+             one there was wrong by more than two standard deviations; rough the part closer to the wall, or judge the first planned part with truepath inspect",
+            unit.of(pushed),
+            unit.of(allowance),
+            name = unit.name()
         )
     })
 }
 
 /// What is said of depths that are nearer to each other than the cutter is taken to be deep in the stock.
-fn deeper_than_apart(pass: &Pass) -> Option<String> {
+fn deeper_than_apart(pass: &Pass, unit: Unit) -> Option<String> {
     let depth = float(pass.core.setup.axial_depth);
     let finishing = pass.plan.iter().flat_map(|plan| &plan.passes).filter(|one| !one.spring);
     let z: Vec<Offset> = finishing.filter_map(|one| Some(Offset::from_nm(one.z?.nm()))).collect();
     let apart = z.windows(2).map(|pair| mm((pair[0] - pair[1]).abs())).fold(f64::INFINITY, f64::min);
     (apart + 0.001 < depth).then(|| {
         format!(
-            "the depths of {} are {apart} mm apart, and cut.axial_depth_mm is {depth}: the depth before has cut the wall above already, and the \
+            "the depths of {} are {} {} apart, and cut.axial_depth_mm is {depth}: the depth before has cut the wall above already, and the \
              plan takes it to be in the stock; leave axial_depth_mm out, so that every contour has its own",
-            contour_name(pass)
+            contour_name(pass),
+            unit.of(apart),
+            unit.name()
         )
     })
 }
@@ -476,7 +491,7 @@ fn summary(
     measured: &[(Pass, Measurement)],
     mut plans: Vec<Plan>,
     written: Option<Written>,
-    warnings: Vec<String>,
+    warnings: Vec<Remark>,
 ) -> PlanSummary {
     let unit = measured.first().map(|(pass, _)| pass.unit()).unwrap_or_default();
     let plan = if several { None } else { plans.pop() };
@@ -501,7 +516,7 @@ pub(super) fn write_files(
     several: bool,
     numbers: &[usize],
     done: WrittenPlan,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Remark>,
 ) -> Result<Written, Failure> {
     let verify = write_verification(folder, passes, warnings)?;
     let name = planned_name(passes);
@@ -526,7 +541,7 @@ pub(super) fn write_files(
             largest_correction_mm: wall.largest_correction_mm,
         });
     }
-    warnings.extend(done.program.warnings);
+    warnings.extend(done.program.warnings.into_iter().map(Remark::from));
     let choice = if several { None } else { choices.pop() };
     Ok(Written {
         program: out.join(name),
@@ -541,11 +556,11 @@ pub(super) fn write_files(
 
 /// Writes the program that touches the walls as `truepath probe` does, for the control of the part's program; whether that is known
 /// and the walls can be touched.
-fn write_verification(folder: &OutputFolder, passes: &[Pass], warnings: &mut Vec<String>) -> Result<bool, Failure> {
+fn write_verification(folder: &OutputFolder, passes: &[Pass], warnings: &mut Vec<Remark>) -> Result<bool, Failure> {
     let control = passes.first().and_then(|pass| pass.job.probe_control);
     let Some(dialect) = control.and_then(|name| ProbeDialect::from_str(name, true).ok()) else {
         let help = "job and program name no control that a verification program is written for: truepath probe writes it with --dialect, or lists the places";
-        warnings.push(help.to_owned());
+        warnings.push(help.into());
         return Ok(false);
     };
     let text = plan_every(passes, &Settings::default(), &mut |_| ())
@@ -557,7 +572,7 @@ fn write_verification(folder: &OutputFolder, passes: &[Pass], warnings: &mut Vec
             Ok(true)
         }
         Err(Failure::Input(error)) => {
-            warnings.push(format!("no verification program was written: {}: {}", error.code(), error.found()));
+            warnings.push(format!("no verification program was written: {}: {}", error.code(), error.found()).into());
             Ok(false)
         }
         Err(failure) => Err(failure),
@@ -619,21 +634,21 @@ pub(super) fn program_name(pass: &Pass) -> String {
 }
 
 fn wanted(options: &Options, job: &JobFile) -> Result<Wanted, Failure> {
-    let flag = |name: &str, text: &str, number: Option<Decimal>, limits: Limits, help: &str| {
+    let flag = |name: &str, text: &str, number: Option<Decimal>, (limits, expected): (Limits, String), help: &str| {
         number.filter(|n| limits.admits(*n)).map(Decimal::as_f64).ok_or_else(|| {
             let found = format!("{name} on the command line is {text:?}");
-            Failure::from(InputError::new(C001, found, limits.phrase(), help))
+            Failure::from(InputError::new(C001, found, expected, help))
         })
     };
     let tolerance_mm = match &options.tolerance {
         Some(text) => {
             let help = "write --tolerance 0.02 for ±0.02 mm at every height, 0.0008in for ±0.0008 in";
-            flag("--tolerance", text, Decimal::length(text), TOLERANCE, help)?
+            flag("--tolerance", text, Decimal::length(text), (TOLERANCE, TOLERANCE.phrase_in_both()), help)?
         }
         None => match job.part.tolerance {
             Some(tolerance) => mm(tolerance.upper).min(-mm(tolerance.lower)),
             None => {
-                let help = "write --tolerance 0.02 for ±0.02 mm, or tolerance_mm under [part] of the job";
+                let help = "write --tolerance 0.02 for ±0.02 mm (0.0008in for ±0.0008 in), or tolerance_mm (tolerance_in) under [part] of the job";
                 let error = InputError::new(J004, "no tolerance to plan for", "half the width of one", help);
                 return Err(error.in_file(&options.job).into());
             }
@@ -641,7 +656,7 @@ fn wanted(options: &Options, job: &JobFile) -> Result<Wanted, Failure> {
     };
     let text = &options.confidence;
     let help = "write --confidence 95 for 95 of 100 parts";
-    let confidence = flag("--confidence", text, Decimal::parse(text), CONFIDENCE, help)? / 100.0;
+    let confidence = flag("--confidence", text, Decimal::parse(text), (CONFIDENCE, CONFIDENCE.phrase()), help)? / 100.0;
     Ok(Wanted { tolerance_mm, confidence, limits: job.plan })
 }
 
@@ -668,7 +683,7 @@ mod tests {
             let place = folder.path().join("job.toml");
             std::fs::write(&place, job(depth)).expect("written");
             let Ok(pass) = JobFile::read(&place).map_err(Failure::from).and_then(Pass::read) else { panic!("refused") };
-            deeper_than_apart(&pass)
+            deeper_than_apart(&pass, Unit::Millimetre)
         };
         assert!(said("axial_depth_mm = 8.0\n").is_some_and(|text| text.contains("6 mm apart")));
         assert_eq!(said("axial_depth_mm = 6.0\n"), None);

@@ -3,7 +3,7 @@
 use super::correction_files::CONTOURS;
 
 /// Files that these commands may write.
-pub(super) const FILES: &[&str] = &[
+pub const FILES: &[&str] = &[
     "summary.json",
     REPORT,
     PROGRAM,
@@ -17,7 +17,7 @@ pub(super) const FILES: &[&str] = &[
     CONTOURS,
 ];
 /// The written program, beside the one of its own name.
-pub(super) const PROGRAM: &str = "planned.nc";
+pub const PROGRAM: &str = "planned.nc";
 /// Stands for that name when the folder is claimed.
 const NAMED: &str = "*.planned*";
 /// What touches its wall.

@@ -10,7 +10,7 @@ use truepath_core::geometry::{Side, Vector};
 use truepath_core::units::Offset;
 use truepath_correction::edits::block_edits;
 use truepath_ground::diagnostics::Failure;
-use truepath_ground::length;
+use truepath_ground::length::{self, Remark, Unit};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::mm;
 use truepath_job::job::{JobFile, Mode, PerSection, PocketTable, Which};
@@ -78,6 +78,7 @@ pub(super) fn compensate(
 }
 
 fn words(s: &PocketSummary) -> String {
+    let (unit, name) = (s.unit, s.unit.name());
     let what = match s.mode {
         Mode::Wall => "finishing pass",
         Mode::Slot => "slot, near wall on the",
@@ -85,21 +86,27 @@ fn words(s: &PocketSummary) -> String {
     let side = if s.mode == Mode::Slot { format!(" {}", s.near_wall) } else { String::new() };
     let cutter = &s.cutter;
     let mut text = format!(
-        "{what}{side}, {:.1} mm, {} milling; cutter {:.1} mm free, {:.1} of it fluted: {:.3} µm/N at the tip, {:.3} at the top of the cut\n\n",
-        s.length_mm, s.milling, cutter.stickout_mm, cutter.flute_length_mm, cutter.tip_um_per_n, cutter.top_um_per_n,
+        "{what}{side}, {:.1} {name}, {} milling; cutter {:.1} {name} free, {:.1} of it fluted: {:.3} µm/N at the tip, {:.3} at the top of the cut\n\n",
+        unit.of(s.length_mm),
+        s.milling,
+        unit.of(cutter.stickout_mm),
+        unit.of(cutter.flute_length_mm),
+        cutter.tip_um_per_n,
+        cutter.top_um_per_n,
     );
-    text += &sections_text(&s.sections);
+    text += &sections_text(&s.sections, unit);
     text += &format!(
-        "\nband ±{} mm: {} of {} sections shifted, largest error {:.4} -> {:.4} mm, predicted\n\
+        "\nband ±{} {name}: {} of {} sections shifted, largest error {:.4} -> {:.4} {name}, predicted\n\
          without a probe this is as good as the force coefficients:\n",
-        s.tolerance_mm,
+        unit.of(s.tolerance_mm),
         s.sections_shifted,
         s.sections.len(),
-        s.max_error_before_mm,
-        s.max_error_after_mm
+        unit.of(s.max_error_before_mm),
+        unit.of(s.max_error_after_mm)
     );
     if s.max_error_sharp_mm > 0.0 {
-        text += &format!("  (corners without an arc apart: {:.4} mm remain there)\n", s.max_error_sharp_mm);
+        let left = unit.of(s.max_error_sharp_mm);
+        text += &format!("  (corners without an arc apart: {left:.4} {name} remain there)\n");
     }
     for case in &s.sensitivity {
         let out = match case.sections_out {
@@ -108,10 +115,10 @@ fn words(s: &PocketSummary) -> String {
             n => format!("{n} sections out of the band"),
         };
         text += &format!(
-            "  coefficients {:+.0} %: largest error {:.4} -> {:.4} mm, {out}\n",
+            "  coefficients {:+.0} %: largest error {:.4} -> {:.4} {name}, {out}\n",
             100.0 * (case.factor - 1.0),
-            case.max_error_before_mm,
-            case.max_error_after_mm
+            unit.of(case.max_error_before_mm),
+            unit.of(case.max_error_after_mm)
         );
     }
     text
@@ -141,7 +148,7 @@ fn run(
     let mut table = job.pocket.unwrap_or_default();
     table.per_section = options.per_section.unwrap_or(table.per_section);
     if let Some(tolerance) = options.tolerance {
-        table.tolerance = checked(tolerance).map_err(|e| e.failure(&job))?;
+        table.tolerance = checked(tolerance).map_err(|e| e.failure(&job, Unit::default()))?;
     }
     if table.mode == Mode::Slot && job.numbers.wall.is_none() {
         // A slot has a wall on either side: the right one is called near, unless the program names one.
@@ -149,14 +156,14 @@ fn run(
             read_blocks(&job.read_program()?, job.numbers.program_options()).ok().and_then(|(_, contour)| contour.wall);
         job.numbers.wall = named.or(Some(Side::Right));
     }
-    let machine = Machine::of(&job).map_err(|e| e.failure(&job))?;
+    let machine = Machine::of(&job).map_err(|e| e.failure(&job, Unit::default()))?;
     let pass = Pass::read(job)?;
     let folder = OutputFolder::create(out, options.force, FILES)?;
     let mut warnings = pass.warnings.clone();
     if table.mode == Mode::Slot && pass.job.gives("stock.allowance_mm") {
-        warnings.push("[stock] is not used: a slot is cut at full immersion".to_owned());
+        warnings.push("[stock] is not used: a slot is cut at full immersion".into());
     }
-    let refused = |error: PocketError| error.failure(&pass.job);
+    let refused = |error: PocketError| error.failure(&pass.job, pass.unit());
     let made = match table.mode {
         Mode::Wall => {
             let mut buffer = PathBuffer::default();
@@ -170,7 +177,7 @@ fn run(
         Mode::Slot => {
             let process = slotting(&pass).map_err(refused)?;
             if pass.plan.as_ref().is_some_and(|plan| plan.passes.len() > 1) {
-                warnings.push("only the depth that was asked for is compensated, see --pass".to_owned());
+                warnings.push("only the depth that was asked for is compensated, see --pass".into());
             }
             make(&pass, &process, (&table, false), &mut warnings, progress, |designed, _| {
                 Ok(edits(process.stations(), &designed.vectors))
@@ -180,14 +187,14 @@ fn run(
     let written = if made.told.designed.shifted.contains(&true) {
         Some(corrected_program(&pass, &made.edits)?)
     } else {
-        warnings.push("every section is within the band: the program stays as it is, and none is written".to_owned());
+        warnings.push("every section is within the band: the program stays as it is, and none is written".into());
         None
     };
     let difference = written.as_ref().map(|written| written.difference.clone());
     let summary = pocket_summary(&pass, &table, &machine, &made.told, difference, warnings);
     if let Some(written) = &written {
         folder.write("corrected.nc", &written.text)?;
-        let text = written.difference.text(pass.program.name());
+        let text = written.difference.text(pass.program.name(), pass.unit());
         folder.write("difference.txt", text.as_bytes())?;
     }
     folder.write("correction.csv", &made.correction)?;
@@ -211,11 +218,11 @@ fn make(
     pass: &Pass,
     process: &dyn Process,
     (table, closed): (&PocketTable, bool),
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Remark>,
     progress: &mut dyn FnMut(f64),
-    edits: impl FnOnce(&Designed, &mut Vec<String>) -> Result<Vec<BlockEdit>, Failure>,
+    edits: impl FnOnce(&Designed, &mut Vec<Remark>) -> Result<Vec<BlockEdit>, Failure>,
 ) -> Result<Made, Failure> {
-    let refused = |error: PocketError| error.failure(&pass.job);
+    let refused = |error: PocketError| error.failure(&pass.job, pass.unit());
     let tolerance_mm = mm(table.tolerance);
     let clamp_mm = mm(pass.job.numbers.correct.clamp);
     let wanted = Wanted { tolerance_mm, per_section: table.per_section, clamp_mm, closed };
@@ -227,7 +234,7 @@ fn make(
     Ok(Made {
         edits,
         correction: correction_csv(stations, &designed)?,
-        picture: before_after(stations, &designed, table.mode, tolerance_mm)?,
+        picture: before_after(stations, &designed, table.mode, (tolerance_mm, pass.unit()))?,
         told: Told { rows: section_rows(stations, &designed, table.mode, tolerance_mm), sensitivity, designed },
     })
 }
@@ -237,17 +244,17 @@ fn wall_edits(
     pass: &Pass,
     path: &Path,
     designed: &Designed,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Remark>,
 ) -> Result<Vec<BlockEdit>, Failure> {
     let nm = |v: f64| Offset::from_nm((v * 1e6).round() as i64);
     let node = |v: &[f64; 2]| Node { chip: Vector::ZERO, edge: Vector { x: nm(v[0]), y: nm(v[1]) } };
     let nodes: Vec<Node> = designed.vectors.iter().map(node).collect();
     let mut edits = Vec::new();
-    let mut levels = levels::each(pass, path, |_, pass, path| {
+    let levels = levels::each(pass, path, |_, pass, path| {
         edits.extend(block_edits(pass, path, &nodes, None));
         Ok(())
     })?;
-    warnings.append(&mut levels.left);
+    warnings.extend(levels.left.into_iter().map(Remark::from));
     Ok(edits)
 }
 

@@ -5,6 +5,7 @@ use std::path::Path as FilePath;
 use truepath_correction::correction::Identification;
 use truepath_correction::verification::{unseparated, unseparated_contours};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::length::Remark;
 use truepath_ground::output::OutputFolder;
 use truepath_job::dimension::kept;
 use truepath_job::measurement::Measurement;
@@ -72,26 +73,27 @@ pub(super) fn apart(
     pass: &Pass,
     measurement: &Measurement,
     identified: &Identification,
-) -> Result<Vec<String>, Failure> {
+) -> Result<Vec<Remark>, Failure> {
     if measurement.dimensions.is_none() {
         return Ok(Vec::new());
     }
     let mut buffer = PathBuffer::default();
     let path = pass.sample(&mut buffer)?.with_law(identified.law());
-    Ok(unseparated(&path, measurement, identified))
+    Ok(unseparated(&path, measurement, identified, pass.unit()))
 }
 
 /// What widths between two contours leave open of their walls; every wall with what was identified from all.
 pub(super) fn contours_apart(
     walls: &[(&Pass, &Measurement)],
     identified: &Identification,
-) -> Result<Vec<String>, Failure> {
+) -> Result<Vec<Remark>, Failure> {
     let mut buffers: Vec<PathBuffer> = walls.iter().map(|_| PathBuffer::default()).collect();
     let mut measured = Vec::new();
     for ((pass, measurement), buffer) in walls.iter().zip(&mut buffers) {
         measured.push((pass.sample(buffer)?.with_law(identified.law()), *measurement));
     }
-    Ok(unseparated_contours(&measured, identified))
+    let unit = walls.first().map(|(pass, _)| pass.unit()).unwrap_or_default();
+    Ok(unseparated_contours(&measured, identified, unit))
 }
 
 /// The probe file among the outputs.

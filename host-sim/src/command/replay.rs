@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::length::Unit;
 use truepath_ground::output::{OutputFile, json};
 use truepath_trial::codes::R004;
 use truepath_trial::replay::{Run, replay, settings};
@@ -36,6 +37,9 @@ pub struct Options {
     /// `hold_after_ticks=40`; may be repeated.
     #[arg(long = "setting", value_name = "NAME=VALUE")]
     settings: Vec<String>,
+    /// Say lengths in inches; files stay in millimetres.
+    #[arg(long)]
+    inch: bool,
     /// Replace the output file if it exists.
     #[arg(long)]
     force: bool,
@@ -85,14 +89,16 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
     } else if summary.state == "Active" || summary.state == "Hold" {
         terminal.warn("the file ends before the path does; the correction was still on");
     }
+    let unit = if options.inch { Unit::Inch } else { Unit::Millimetre };
     let text = format!(
-        "{} ticks, {} with a correction, largest {:.4} mm; {} above the warn level, {} cut by the clamp, {} faded\n\
+        "{} ticks, {} with a correction, largest {:.4} {}; {} above the warn level, {} cut by the clamp, {} faded\n\
          ended in state {}: {}\n\
          fingerprint {}\n\
          written to {}\n",
         summary.ticks,
         summary.corrected_ticks,
-        summary.max_correction_mm,
+        unit.of(summary.max_correction_mm),
+        unit.name(),
         summary.warned_ticks,
         summary.saturated_ticks,
         summary.faded_ticks,

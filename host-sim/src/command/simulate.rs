@@ -9,6 +9,7 @@ use truepath_core::correct::{Band, Profile, profile};
 use truepath_core::cut::{ForceTable, State};
 use truepath_core::geometry::Vector;
 use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::length::Remark;
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::mm;
 use truepath_job::feature::listing;
@@ -16,6 +17,7 @@ use truepath_job::job::{JobFile, Which};
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_plant as plant;
 use truepath_plant::{Surface, judged_trim_mm};
+use truepath_report::next::shown;
 use truepath_report::page::Along;
 use truepath_report::pages::{REPORT, simulated};
 use truepath_report::plot::Column;
@@ -115,7 +117,26 @@ pub struct Options {
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
     let summary = run(options)?;
     terminal.warn_all(&summary.warnings);
-    terminal.tell(&summary, || words(&summary, &options.output))
+    terminal.tell(&summary, || words(&summary, &options.output) + &next(options))
+}
+
+/// What to do with the touches, where there are any.
+fn next(options: &Options) -> String {
+    let job = shown(&options.job);
+    let probe = |name: &str| shown(&options.output.join(name));
+    match (&options.touch, options.stock, &options.from) {
+        (None, ..) => String::new(),
+        (Some(_), true, _) => {
+            format!(
+                "touches written to {0}; next: name them in the job: [stock] probe = \"{0}\"\n",
+                probe(TOUCHED_STOCK)
+            )
+        }
+        (Some(_), false, Some(from)) => {
+            format!("next: truepath learn {job} --probe {} --from {} -o DIR\n", probe(TOUCHED), shown(from))
+        }
+        (Some(_), false, None) => format!("next: truepath correct {job} --probe {} -o DIR\n", probe(TOUCHED)),
+    }
 }
 
 fn words(summary: &SimulateSummary, output: &FilePath) -> String {
@@ -284,7 +305,7 @@ fn recording(file: &FilePath, placement: &PlacementOptions) -> Result<(Setpoints
 ///
 /// # Errors
 /// As [`Pass::sample`].
-fn predicted(pass: &Pass, warnings: &mut Vec<String>) -> Result<(Trace, Along), Failure> {
+fn predicted(pass: &Pass, warnings: &mut Vec<Remark>) -> Result<(Trace, Along), Failure> {
     let mut buffer = PathBuffer::default();
     let path = pass.sample(&mut buffer)?;
     let prior = pass.core.prior(pass.core.setup.law).mean;
@@ -293,11 +314,14 @@ fn predicted(pass: &Pass, warnings: &mut Vec<String>) -> Result<(Trace, Along), 
     let mut states = vec![State::REST; path.working().len()];
     let passage = machine.run(path.working().start, &mut states, |_| Vector::ZERO);
     if passage.unsettled > 0 {
-        warnings.push(format!(
-            "the elastic loop did not settle at {} places (worst residual {:.4} mm): the machine is too soft for this cut",
-            passage.unsettled,
-            mm(passage.worst_residual)
-        ));
+        warnings.push(pass.unit().remark(|unit| {
+            format!(
+                "the elastic loop did not settle at {} places (worst residual {:.4} {}): the machine is too soft for this cut",
+                passage.unsettled,
+                unit.of(mm(passage.worst_residual)),
+                unit.name()
+            )
+        }));
     }
     let mut displacements = vec![Vector::ZERO; states.len()];
     let mut profiles = vec![Profile::default(); path.count()];
@@ -343,43 +367,48 @@ fn milled(
     pass: &Pass,
     machine: &plant::Machine,
     commanded: &Commanded,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Remark>,
 ) -> Result<Done, Failure> {
-    let (milled, facts) = match commanded {
-        Commanded::Whole(program) => {
-            let part = process::cut(pass, machine, program)?;
-            let worst = part.laps().iter().map(|lap| lap.residual_mm).fold(0.0, f64::max);
-            if worst > OPEN_MM {
-                let open: usize = part.laps().iter().map(|lap| lap.open_places).sum();
-                warnings.push(format!(
-                    "the elastic loop did not settle at {open} places, teeth and heights (worst residual {worst:.4} mm)"
-                ));
+    let (milled, facts) =
+        match commanded {
+            Commanded::Whole(program) => {
+                let part = process::cut(pass, machine, program)?;
+                let worst = part.laps().iter().map(|lap| lap.residual_mm).fold(0.0, f64::max);
+                if worst > OPEN_MM {
+                    let open: usize = part.laps().iter().map(|lap| lap.open_places).sum();
+                    warnings.push(pass.unit().remark(|unit| {
+                    format!(
+                        "the elastic loop did not settle at {open} places, teeth and heights (worst residual {:.4} {})",
+                        unit.of(worst),
+                        unit.name()
+                    )
+                }));
+                }
+                let trace = page::trace_of_part(&part);
+                let along = page::parted(&part, &trace, "cut by the virtual machine, all passes of the program");
+                let surface = Some(part.surface());
+                return Ok(Done {
+                    by: "plant",
+                    trace,
+                    along,
+                    made: Some(Made::Part(Box::new(part))),
+                    surface,
+                    facts: None,
+                });
             }
-            let trace = page::trace_of_part(&part);
-            let along = page::parted(&part, &trace, "cut by the virtual machine, all passes of the program");
-            let surface = Some(part.surface());
-            return Ok(Done {
-                by: "plant",
-                trace,
-                along,
-                made: Some(Made::Part(Box::new(part))),
-                surface,
-                facts: None,
-            });
-        }
-        Commanded::Nominal => (virtual_mill::mill(pass, machine, None)?, None),
-        Commanded::Program(program) => (virtual_mill::mill_executed(pass, machine, program)?, None),
-        Commanded::Recorded(setpoints, placement) => {
-            let (milled, facts) = virtual_mill::mill_recorded(pass, machine, setpoints, placement)?;
-            if facts.passes > 1 {
-                warnings.push(format!(
+            Commanded::Nominal => (virtual_mill::mill(pass, machine, None)?, None),
+            Commanded::Program(program) => (virtual_mill::mill_executed(pass, machine, program)?, None),
+            Commanded::Recorded(setpoints, placement) => {
+                let (milled, facts) = virtual_mill::mill_recorded(pass, machine, setpoints, placement)?;
+                if facts.passes > 1 {
+                    warnings.push(format!(
                     "the recording passes the contour {} times; taken is the pass nearest to it, {:.3} to {:.3} s",
                     facts.passes, facts.from_s, facts.to_s
-                ));
+                ).into());
+                }
+                (milled, Some(facts))
             }
-            (milled, Some(facts))
-        }
-    };
+        };
     let trace = page::trace_of(&milled);
     let label = match commanded {
         Commanded::Nominal => "cut by the virtual machine",

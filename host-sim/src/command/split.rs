@@ -11,8 +11,9 @@ use clap::Args;
 use truepath_core::units::Offset;
 use truepath_correction::first_pass;
 use truepath_ground::codes::J008;
+use truepath_ground::count::counted;
 use truepath_ground::diagnostics::{Failure, InputError};
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Remark, Unit};
 use truepath_ground::output::OutputFolder;
 use truepath_ground::units::mm;
 use truepath_job::job::JobFile;
@@ -58,7 +59,7 @@ pub struct Split {
     /// Lines and arcs of the first pass.
     pub moves: usize,
     /// What the user should know.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Remark>,
 }
 
 /// Splits, and prints what to do next.
@@ -71,14 +72,14 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
 fn words(split: &Split, job: &FilePath) -> String {
     let (program, first, job) = (split.program.display(), split.job.display(), job.display());
     format!(
-        "{program}: the contour {:.3} {name} away from the wall in {} moves; the second pass takes the other {:.3} {name}\n\
+        "{program}: the contour {:.3} {name} away from the wall in {}; the second pass takes the other {:.3} {name}\n\
          next:\n\
          1. mill {program} and leave the part clamped\n\
          2. probe its wall: truepath probe {first} ..., or your own probing routine\n\
          3. truepath correct {job} --first-pass {first} --probe FILE -o DIR\n\
          4. mill the corrected program\n",
         split.unit.of(split.allowance_mm),
-        split.moves,
+        counted(split.moves, "move"),
         split.unit.of(split.allowance_mm),
         name = split.unit.name()
     )

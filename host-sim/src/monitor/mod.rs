@@ -6,6 +6,7 @@
 //! | [`screen`] | the terminal: raw mode, the other screen, keys, signals; given back on every way out |
 //! | [`state`], [`advice`] | the state of a device in words, and what the operator should do |
 //! | [`history`], [`trend`] | samples of the last seconds, and their picture |
+//! | [`timing`] | how regularly setpoints arrive: a line, and histograms |
 //! | [`growth`], [`counts`] | counters with what they grow by, and their table |
 //! | [`theme`], [`wording`] | colours that differ for colour-blind eyes too; numbers and times in words |
 //!
@@ -23,6 +24,7 @@ mod pictures;
 mod screen;
 mod state;
 mod theme;
+mod timing;
 mod trend;
 mod wording;
 

@@ -3,12 +3,33 @@
 use std::path::Path;
 
 use ratatui::buffer::Buffer;
+use truepath_core::link::{Spread, Timing};
 
 /// The letters of a picture, without blanks at the ends of lines.
 pub fn text(buffer: &Buffer) -> String {
     let rows = buffer.content.chunks(usize::from(buffer.area.width));
     let line = |row: &[ratatui::buffer::Cell]| row.iter().map(|cell| cell.symbol()).collect::<String>();
     rows.map(|row| format!("{}\n", line(row).trim_end())).collect()
+}
+
+/// Setpoints at 1 kHz, most of them within 20 µs of their time, one very late.
+pub fn timing() -> Timing {
+    let spread = |count, mean_ns, deviation_ns, least_ns, greatest_ns| Spread {
+        count,
+        mean_ns,
+        deviation_ns,
+        least_ns,
+        greatest_ns,
+    };
+    Timing {
+        period_ns: 1_000_000,
+        arrivals: spread(14_990, 40, 12_300, -50_000, 121_000),
+        early: [402, 410, 1_280, 1_610, 2_020, 1_260, 3, 0, 0, 0, 0],
+        late: [390, 420, 1_310, 1_590, 2_060, 1_230, 960, 44, 1, 0, 0],
+        answers: spread(14_991, 8_100, 320, 7_600, 12_000),
+        taken: [0, 0, 0, 14_902, 89, 0, 0, 0, 0, 0, 0],
+        missed: 0,
+    }
 }
 
 fn blesses() -> bool {

@@ -166,7 +166,7 @@ pub fn words(detail: &Detail) -> String {
                 );
             }
             for warning in &first_part.corrected.summary.warnings {
-                line("warning", warning.clone());
+                line("warning", warning.to_string());
             }
         }
     }
@@ -194,7 +194,7 @@ pub fn words(detail: &Detail) -> String {
                 ]),
             );
             for remark in second_part.learned.verdict.remarks() {
-                line("remark", remark.clone());
+                line("remark", remark.to_string());
             }
         }
     }

@@ -139,7 +139,7 @@ fn an_allowance_that_the_roughing_does_not_leave_is_told() {
     let job = JobFile::parse(Source::new("pocket.toml", text.into_bytes()), &data("")).unwrap();
     let pass = Pass::read(job).unwrap();
     let told = "the pass before the finishing one (lines 28-36) leaves 0.5000 mm, the job says allowance_mm = 0.8";
-    assert!(pass.warnings.iter().any(|w| w == told), "{:?}", pass.warnings);
+    assert!(pass.warnings.iter().any(|w| **w == *told), "{:?}", pass.warnings);
 }
 
 #[test]

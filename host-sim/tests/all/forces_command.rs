@@ -77,12 +77,35 @@ fn means_without_axes_find_the_axes_and_predict_what_was_not_fitted() {
         "version = 1\n[tool]\ndiameter_mm = 25\nteeth = 2\nhelix_deg = 45\n[cutting]\naxial_depth_mm = 3\nspindle_rpm = 6000\n\
          milling = \"slot\"\n{cuts}"
     );
-    fs::write(folder.path().join("cuts.toml"), text).expect("a file");
+    fs::write(folder.path().join("cuts.toml"), &text).expect("a file");
     let done = truepath(folder.path(), &["forces", "cuts.toml", "-o", "out"]);
     let said = String::from_utf8_lossy(&done.stdout).into_owned();
     assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
     assert!(said.contains("feed = \"across_n\", across = \"feed_n\""), "{said}");
     assert!(said.contains("cuts that were not fitted are predicted within 4."), "{said}");
+
+    // In inches: the same forces, told in inches; what is written keeps millimetres.
+    let written = fs::read_to_string(folder.path().join("out/forces.toml")).expect("a file");
+    let inches: String = text
+        .split_inclusive('\n')
+        .map(|line| {
+            match line.trim_end().split_once("_mm = ").and_then(|(key, mm)| Some((key, mm.parse::<f64>().ok()?))) {
+                Some((key, mm)) => format!("{key}_in = {:.9}\n", mm / 25.4),
+                None => line.to_owned(),
+            }
+        })
+        .collect();
+    fs::write(folder.path().join("cuts.toml"), &inches).expect("a file");
+    let done = truepath(folder.path(), &["forces", "cuts.toml", "-o", "inch"]);
+    let said = String::from_utf8_lossy(&done.stdout).into_owned();
+    assert!(said.contains(": 0.00098 in per tooth") && !said.contains(" mm"), "{said}");
+    let again = fs::read_to_string(folder.path().join("inch/forces.toml")).expect("a file");
+    let numbers = |text: &str| text.lines().filter(|line| line.starts_with("ktc")).collect::<String>();
+    assert_eq!(numbers(&again), numbers(&written));
+    fs::write(folder.path().join("cuts.toml"), inches.replace("axial_depth_in = 0.1", "#")).expect("a file");
+    let done = truepath(folder.path(), &["forces", "cuts.toml", "-o", "none"]);
+    let told = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert!(told.contains("axial_depth_in of a cut is missing; expected a number, above 0, up to 7.87 in"), "{told}");
 }
 
 /// Round a corner of a boss, climbing, with three teeth: a part beside those of the demonstration.

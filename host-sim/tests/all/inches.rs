@@ -164,7 +164,38 @@ fn flags_take_inches_and_what_is_refused_or_doubted_is_said_in_inches() {
 
     let said = desk.said("probe job.toml --dimensions --reach 6in --uncertainty 0.001in -o dims");
     assert!(said.contains(" Z in  nominal in\n") && said.contains("  3.0000  "), "{said}");
+    assert!(said.ends_with("  truepath correct job.toml --dimensions dims.toml -o DIR\n"), "{said}");
     assert_eq!(has_metric(&said), None);
+    let sheet = desk.text("dims.html");
+    assert!(sheet.contains("<th>read in</th>") && sheet.contains(", ± 0.0010 in with k = 2") && !sheet.contains(" mm"));
+
+    // The file is typed into in inches, and what is wrong with it is said in them.
+    let table = desk.text("dims.toml");
+    assert!(
+        table.contains("nominal 3.0000 in\n") && !table.contains("_mm") && table.contains("\nvalue_in = \"\"\n"),
+        "{table}"
+    );
+    let first = table.split("\n\n").take(2).collect::<Vec<_>>().join("\n\n");
+    let refused = |file: &str| {
+        fs::write(desk.0.path().join("typed.toml"), file).expect("a file");
+        let (_, told) = desk.ended("correct job.toml --dimensions typed.toml -o typed", &[1]);
+        assert_eq!(has_metric(&told), None);
+        told
+    };
+    assert!(refused(&first).contains("value_in of 1 is empty"));
+    let value = |value: &str| first.replace("value_in = \"\"", &format!("value_in = {value}"));
+    let told = refused(&value("26.67"));
+    assert!(told.contains("1 is 26.67 in; expected within 0.079 in of 1.0500 in (Y-1.0500 to Y0.0000)"), "{told}");
+    assert!(told.contains("it looks like millimetres: write value_mm"), "{told}");
+    let moved = |key: &str, put: &str| {
+        let line = |line: &str| if line.starts_with(key) { format!("{key} = {put}") } else { line.to_owned() };
+        value("1.049").lines().map(line).collect::<Vec<_>>().join("\n")
+    };
+    assert!(refused(&moved("z_in", "0.5")).contains("expected z_in from -0.4 to 0 in"));
+    let told = refused(&moved("x_in", "30"));
+    assert!(told.contains("it reaches from X-0.8000 to X3.0000"), "{told}");
+    fs::write(desk.0.path().join("typed.toml"), value("1.049")).expect("a file");
+    desk.ended("inspect job.toml --dimensions typed.toml --tolerance 0.001in -o typed", &[0]);
 
     // Touches that are somewhere else: of another datum, of another part, a single one.
     let touches = desk.text("first/probe.txt");
@@ -224,6 +255,161 @@ fn pictures_of_a_program_in_inches_are_in_inches() {
     desk.said("plot error cut --inch --from 1 --to 2.5 -o error.svg");
     let error = desk.text("error.svg");
     assert!(error.contains("X (in)") && error.contains(" in of error, drawn ") && !error.contains("mm"), "{error}");
+    desk.said("plot error cut --from 1in --to 63.5mm --inch -o said.svg");
+    assert!(desk.text("said.svg") == error, "a unit says what a number is of");
     let (_, told) = desk.ended("plot error cut --inch --from 60 --to 80 -o none.svg", &[1]);
     assert!(told.contains("the stretch from 60 to 80 in holds nothing of the contour"), "{told}");
+}
+
+/// An open contour with an inside and an outside arc.
+const ARCS: &str = "%\nO0042 (BRACKET)\n(T2 D=0.75 4 FLUTE END MILL)\nG20 G17 G90 G94 G40 G49 G80\nT2 M6\nS1200 M3\nG54\nG0 X-1.2 Y0.9\nG43 Z1. H2\nG0 Z0.1\n\
+    G1 Z-0.4 F10.\nG1 X-0.5 Y0.9 F14.\nG1 X2.\nG3 X2.6 Y1.5 I0. J0.6\nG1 Y3.2\nG2 X3. Y3.6 I0.4 J0.\nG1 X4.2\nG0 Z1.\nM5\nM30\n%\n";
+
+/// The warnings in the data of a page.
+fn warnings_of(page: &str) -> Vec<Value> {
+    let data = page.split_once("id=\"truepath-data\">").expect("data").1.split_once("</script>").expect("an end").0;
+    let data: Value = serde_json::from_str(data).expect("JSON");
+    data["warnings"].as_array().expect("warnings").clone()
+}
+
+#[test]
+fn every_command_tells_of_a_program_with_arcs_in_inches_and_the_page_has_its_warnings_in_both_units() {
+    let desk = Desk::new();
+    fs::write(desk.0.path().join("part.nc"), ARCS).expect("a program");
+    desk.said("init part.nc --yes --set allowance=0.02in --set wall=right --set material=al-6061-t6 --set stiffness=2500 --set tool.stickout_in=2 --set tool.material=carbide -o job.toml");
+    desk.said("probe job.toml -o probe.nc");
+    desk.said("simulate job.toml --plant plant.toml --touch probe.nc -o first");
+    let quiet = |words: &str, codes: &[i32]| {
+        let (said, told) = desk.ended(words, codes);
+        assert_eq!((has_metric(&said), has_metric(&told)), (None, None), "{words}");
+        said + &told
+    };
+
+    let told = quiet("correct job.toml --probe first/probe.txt --tolerance 0.0005in -o corrected", &[0]);
+    assert!(told.contains("cannot hold 0.0005 in at every height"), "{told}");
+    let warned = warnings_of(&desk.text("corrected/report.html"));
+    let said = warned.iter().find_map(|said| {
+        let [mm, inches] = [0, 1].map(|at| said.get(at).and_then(Value::as_str));
+        mm.zip(inches).filter(|(mm, _)| mm.contains("at every height"))
+    });
+    let (mm, inches) = said.expect("a warning in both units");
+    assert!(mm.contains("0.0127 mm at every height") && inches.contains("0.0005 in at every height"), "{mm} {inches}");
+    assert_eq!(has_metric(inches), None);
+    let summary = desk.json("corrected/summary.json");
+    let listed = summary["warnings"].as_array().expect("warnings");
+    assert!(
+        listed.iter().any(|said| said.as_str().is_some_and(|said| said.replace("first/", "") == inches)),
+        "{listed:?}"
+    );
+    for said in warned {
+        let inches = said.as_str().or_else(|| said[1].as_str()).expect("words");
+        assert_eq!(has_metric(inches), None);
+    }
+    assert_eq!(has_metric(&desk.text("corrected/difference.txt")), None);
+
+    quiet("inspect job.toml --probe first/probe.txt -o inspected", &[0]);
+    quiet("compare job.toml --probe first/probe.txt --plant plant.toml -o compared", &[0]);
+    quiet("split job.toml -o split", &[0]);
+    quiet("canon part.nc", &[0]);
+    let packed = quiet("pack corrected first job.toml part.nc -o story.tpk", &[0]);
+    assert!(packed.contains(" in (mean over the height, 1 sigma), "), "{packed}");
+    let planned = quiet("plan job.toml --probe first/probe.txt --tolerance 0.001in -o planned --write 1", &[0]);
+    assert!(planned.ends_with("  truepath learn job.toml --probe FILE --from planned -o DIR\n"), "{planned}");
+    assert!(planned.contains(", 1 pass\n"), "{planned}");
+    let page = desk.text("planned/report.html");
+    assert!(page.contains("0.001 in</text>") || page.contains("worst error, 0.001 in"), "{page}");
+    assert!(!page.contains("µm") && !page.contains(" mm<"), "{page}");
+    let difference = desk.text("planned/difference.txt");
+    assert!(difference.contains("became 1 pass:") && difference.contains("Z-0.40000 in,"), "{difference}");
+    assert_eq!(has_metric(&difference), None);
+
+    let pocket = quiet("pocket job.toml --tolerance 0.00002in -o pocket", &[0]);
+    assert!(pocket.contains("band ±0.00002 in: "), "{pocket}");
+    let picture = desk.text("pocket/before-after.svg");
+    assert!(picture.contains("wall error (in)") && picture.contains("along the contour (in)"), "{picture}");
+    assert!(desk.text("pocket/sections.csv").starts_with("section,"), "tables stay as they are");
+
+    let bore =
+        quiet("bore --hole-radius 0.5in --cutter-radius 0.25in --teeth 4 --feed 12in --rpm 3000 --depth 0.5in", &[0]);
+    assert!(
+        bore.starts_with("bore ⌀1 in, cutter ⌀0.5 in, 4 teeth, conventional; F12.0000 in/min at the centre"),
+        "{bore}"
+    );
+
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/multiaxis");
+    let program = fs::read_to_string(examples.join("sine-trunnion.nc")).expect("a program").replace("G21", "G20");
+    fs::write(desk.0.path().join("five.nc"), program).expect("a program");
+    fs::copy(examples.join("trunnion.toml"), desk.0.path().join("trunnion.toml")).expect("a machine");
+    let five = quiet("multiaxis five.nc --machine trunnion.toml --tolerance 0.0005in --report five", &[0]);
+    assert!(five.contains("tolerance 0.0005 in\n\nchord error, in "), "{five}");
+    assert!(desk.text("five/errors.svg").contains("chord error, in"));
+}
+
+#[test]
+fn what_is_wrong_with_a_program_or_a_flag_is_said_in_inches() {
+    let desk = Desk::new();
+    fs::write(desk.0.path().join("part.nc"), ARCS).expect("a program");
+    desk.said("init part.nc --yes --set allowance=0.02in --set wall=right -o job.toml");
+    for (found, put, words) in [
+        ("I0. J0.6", "R0.2", "radius 0.200 in cannot reach an end 0.84853 in away"),
+        ("I0. J0.6", "I0. J0.4", "the start of this arc is 0.400 in from its centre but the end 0.63246 in"),
+    ] {
+        fs::write(desk.0.path().join("part.nc"), ARCS.replace(found, put)).expect("a program");
+        let (_, told) = desk.ended("probe job.toml -o probe.nc", &[1]);
+        assert!(told.contains(words), "{told}");
+        assert_eq!(has_metric(&told), None);
+    }
+    fs::write(desk.0.path().join("part.nc"), ARCS).expect("a program");
+    let (_, told) = desk.ended("probe job.toml --clearance 9in -o probe.nc", &[1]);
+    assert!(
+        told.contains("50 mm (") && told.contains(" to 1.96 in)"),
+        "both units, as the program is not read: {told}"
+    );
+    let (_, told) = desk.ended("probe job.toml --dimensions --reach 0in -o dims", &[2]);
+    assert!(told.contains(" in)"), "{told}");
+    for command in
+        ["plan job.toml --probe none.txt --tolerance 20in -o p", "inspect job.toml --probe none.txt --tolerance 20in"]
+    {
+        let (_, told) = desk.ended(command, &[2]);
+        assert!(told.contains(" mm (") && told.contains(" in)"), "{told}");
+    }
+}
+
+/// A pocket finished by a stranger: the comment abbreviates, and an arc shows the side.
+const POCKET: &str = "%\nO1207(POCKET FINISH)\n(T4 - 3/8 EM 4 FLUTE CARBIDE)\nG20G17G40G49G80G90\nT4M6\nG0G90G54X0.Y0.S6500M3\nG43H4Z1.\nZ.1\n\
+    G1Z-.4F10.\nG1X1.25Y0.F30.\nG1Y.5\nG3X1.Y.75I-.25\nG1X-1.\nG3X-1.25Y.5J-.25\nG1Y-.5\nG3X-1.125Y-.625I.125\nG1X1.125\nG3X1.25Y-.5J.125\nG1Y0.\n\
+    G1X0.Y.05\nG0Z1.\nM5\nM30\n%\n";
+
+#[test]
+fn init_asks_and_proposes_in_inches_and_doubts_a_length_without_a_unit() {
+    let desk = Desk::new();
+    fs::write(desk.0.path().join("part.nc"), POCKET).expect("a program");
+    let said = desk.said("init part.nc --questions");
+    assert!(said.contains("--set allowance=… [0.0190in]   allowance_in: stock on the wall"), "{said}");
+    assert!(said.contains("in]   ball_diameter_in: diameter of the probe's ball"), "{said}");
+    assert!(!said.contains("diameter of the cutter, which no comment names"), "{said}");
+    assert_eq!(has_metric(&said), None);
+    let asked: Value = serde_json::from_str(&desk.said("--json init part.nc --questions")).expect("JSON");
+    let allowance = asked["questions"].as_array().expect("questions").iter().find(|q| q["name"] == "allowance");
+    assert_eq!(allowance.expect("a question")["proposal"], "0.4826", "JSON stays in millimetres");
+
+    let (job, told) = desk.ended("init part.nc --yes --set allowance=0.012 --set ball=0.236in -o typed.toml", &[0]);
+    assert!(told.contains("--set allowance=0.012 says millimetres, 0.0004724 in: allowance=0.012in would"), "{told}");
+    assert!(
+        job.contains("tool.diameter_in             0.375 ") && job.contains("tool.teeth                   4 "),
+        "{job}"
+    );
+    let (job, told) = desk.ended("init part.nc --yes -o job.toml", &[0]);
+    assert!(job.contains("stock.allowance_in           0.019 ") && !told.contains("--set"), "{job} {told}");
+    assert!(job.contains("round an arc of radius 0.125 in the cutter can leave no wall on the other side"), "{job}");
+    assert_eq!(has_metric(&told), None);
+    let (_, told) = desk.ended("init part.nc --yes --set allowance=1.5in -o wrong.toml", &[1]);
+    assert!(told.contains("stock.allowance_in is 1.5; expected less than the cutter's diameter, 0.3750 in"), "{told}");
+
+    // The places alone, for a machine whose language no program is written in.
+    let listed = desk.said("probe job.toml");
+    assert!(
+        listed.starts_with(" point      s in ") && listed.contains("truepath correct job.toml --probe FILE"),
+        "{listed}"
+    );
 }

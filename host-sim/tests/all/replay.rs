@@ -120,6 +120,12 @@ fn the_replayed_correction_is_the_one_of_the_image() {
     }
     let (last, state) = &rows[6_500];
     assert_eq!((last[4], state.as_str()), (0, "Bypass"));
+
+    let done =
+        truepath(desk.path(), &["replay", "correction.tpi", "--setpoints", "in.csv", "-o", "inch.csv", "--inch"]);
+    let told = String::from_utf8_lossy(&done.stdout).into_owned();
+    assert!(told.contains("largest 0.00197 in; ") && !told.contains(" mm"), "{told}");
+    assert_eq!(self::rows(&desk.path().join("inch.csv")), rows, "files stay in millimetres");
 }
 
 #[test]

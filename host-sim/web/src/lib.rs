@@ -10,5 +10,5 @@
 
 #[cfg(target_family = "wasm")]
 mod bridge;
-#[cfg(any(test, target_family = "wasm"))]
+#[cfg(target_family = "wasm")]
 mod hypotenuse;

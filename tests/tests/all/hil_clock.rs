@@ -3,7 +3,7 @@
 
 use crate::hil_support::{everything, host_board, image, options};
 use truepath::command::hil::{Options, Source, run};
-use truepath_bench::{BenchError, Board, BulkBoard, Client, Event, Exchange, InProcess, Wire};
+use truepath_bench::{BenchError, Board, BulkBoard, Client, Clients, Event, Exchange, InProcess, Wire};
 
 /// A board that looks at the time before every frame.
 struct Watched {
@@ -23,8 +23,8 @@ impl Board for Watched {
     fn client(&mut self) -> Client<&mut dyn Wire> {
         self.board.client()
     }
-    fn first_id(&mut self) -> u16 {
-        self.board.first_id()
+    fn clients(&mut self) -> &mut Clients {
+        self.board.clients()
     }
     fn exchange(&mut self, events: &[Event]) -> Result<Exchange, BenchError> {
         for event in events {

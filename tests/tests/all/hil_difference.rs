@@ -2,7 +2,7 @@
 
 use crate::hil_support::{host_board, image, options};
 use truepath::command::hil::{Report, Source, run};
-use truepath_bench::{BenchError, Board, BulkBoard, Client, Event, Exchange, Faults, InProcess, Wire};
+use truepath_bench::{BenchError, Board, BulkBoard, Client, Clients, Event, Exchange, Faults, InProcess, Wire};
 
 /// A board with a mistake in what it sends back.
 struct Faulty<M> {
@@ -20,8 +20,8 @@ impl<M: FnMut(&mut Exchange)> Board for Faulty<M> {
     fn client(&mut self) -> Client<&mut dyn Wire> {
         self.board.client()
     }
-    fn first_id(&mut self) -> u16 {
-        self.board.first_id()
+    fn clients(&mut self) -> &mut Clients {
+        self.board.clients()
     }
     fn exchange(&mut self, events: &[Event]) -> Result<Exchange, BenchError> {
         let mut exchange = self.board.exchange(events)?;

@@ -55,6 +55,22 @@ fn every_part_of_the_demonstration_comes_out_as_promised() {
 }
 
 #[test]
+fn the_readme_has_the_figures_of_the_demonstration() {
+    let readme = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md")).unwrap();
+    let rows: Vec<&str> = readme.lines().filter(|line| line.starts_with('|')).collect();
+    let story = |o: &demo::Outcome| {
+        let pair = |before: f64, after: f64| format!("{before:.3} → {after:.3}");
+        let [mean, worst] = [pair(o.before_mm, o.after_mm), pair(o.worst_height_before_mm, o.worst_height_after_mm)];
+        format!(" | {} | {mean} | {worst} |", o.points)
+    };
+    let left = format!("leaves {:.3} mm at one height of the second corner", STORY.1[1].worst_height_after_mm);
+    assert!(readme.replace('\n', " ").contains(&left), "{left}");
+    for figures in STORY.1.iter().map(story) {
+        assert!(rows.iter().any(|row| row.ends_with(&figures)), "README.md has another row than{figures}");
+    }
+}
+
+#[test]
 fn the_same_inputs_give_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     for (one, other) in STORY.1.iter().zip(&told(folder.path())) {

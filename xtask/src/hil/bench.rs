@@ -41,6 +41,8 @@ pub struct Bench {
     release: Option<Program>,
     /// The image of the virtual board.
     firmware: String,
+    /// The updatable one as it lies in the flash, and the loader of the board.
+    update: [String; 2],
     /// The parts.
     parts: Parts,
 }
@@ -52,11 +54,15 @@ impl Bench {
     /// Something does not build, or the emulator is missing.
     pub fn set_up(release: bool) -> Result<Self, Failure> {
         emulator::command()?;
-        let elf = Board::Virtual.image().build(&Toolchain::find()?)?;
+        let toolchain = Toolchain::find()?;
+        let firmware = Board::Virtual.image().build(&toolchain)?.display().to_string();
+        let flat = Board::Virtual.updatable().build_flat(&toolchain)?;
+        let loader = Board::Virtual.loader().build(&toolchain)?;
         let debug = Program::build(false)?;
         let release = release.then(|| Program::build(true)).transpose()?;
         let parts = Parts::make(&debug)?;
-        Ok(Self { debug, release, firmware: elf.display().to_string(), parts })
+        let update = [flat, loader].map(|path| path.display().to_string());
+        Ok(Self { debug, release, firmware, update, parts })
     }
 
     /// A run in QEMU.
@@ -104,6 +110,15 @@ impl Bench {
         let image = self.parts.image("corner");
         let board = ["--trust", "--board", "virtual", "--link", link, "--elf", &self.firmware];
         self.debug.trust(&[&[image.as_str()], &board[..]].concat())
+    }
+
+    /// Updates of the firmware in QEMU, one of which does not start; gives how much was tried and how much of it refused.
+    ///
+    /// # Errors
+    /// The device took or refused something that it must not, or ran another program than it has to.
+    pub fn update(&self) -> Result<(usize, usize), Failure> {
+        let [program, loader] = &self.update;
+        self.debug.trust(&["--update", program, "--board", "virtual", "--link", "bulk", "--elf", loader])
     }
 
     /// The image of a part made in QEMU.

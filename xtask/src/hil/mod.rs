@@ -1,5 +1,5 @@
 //! The emulated bench: the same runs on the host (with all, also in release) and on the release image in QEMU, compared by
-//! digest; a run over the UARTs; what a device with a key refuses; the correction made on the device; a short campaign of faults.
+//! digest; a run over the UARTs; what a device with a key refuses; updates of the firmware; the correction made on the device; a short campaign of faults.
 //!
 //! Nothing here depends on how fast this machine is.
 
@@ -50,6 +50,8 @@ pub fn check(all: bool) -> Outcome {
         let (tried, refused) = bench.trust(link)?;
         println!("{tried} images and keys over {link}: {refused} refused, each with its reason");
     }
+    let (tried, refused) = bench.update()?;
+    println!("{tried} steps of firmware updates: {refused} refused, each with its reason; two confirmed, two undone");
     // Over the UARTs setpoints go on while the device computes.
     let on_board: &[_] = if all { &[("corner", "uart"), ("pocket", "bulk")] } else { &[("corner", "uart")] };
     for &(part, link) in on_board {

@@ -2,7 +2,7 @@
 
 use super::node::{Node, commanded};
 use super::paper::PaperTransfer;
-use super::profile::{Band, Profile, Target, add_residual, deepen};
+use super::profile::{Band, HEIGHTS, Profile, Target, add_residual, deepen};
 use super::reader::{InOrder, WallReader};
 use super::refine::{Update, refine, settle_ends};
 use super::scratch::Scratch;
@@ -211,7 +211,6 @@ pub(super) fn walls(machine: &Loop, wanted: &Design, workspace: &mut DesignWorks
 fn one_shot(machine: &Loop, band: Band, nodes: &mut [Node], mirror: bool, uncorrected: &[State]) {
     let path = machine.path;
     let skipped = path.first().saturating_sub(path.working().start);
-    let heights = super::profile::HEIGHTS;
     let (mut chip_scale, mut teeth) = ((None, Real::ZERO), Teeth::BLANK);
     for (i, node) in nodes.iter_mut().enumerate() {
         let index = path.first().saturating_add(i);
@@ -226,12 +225,12 @@ fn one_shot(machine: &Loop, band: Band, nodes: &mut [Node], mirror: bool, uncorr
             machine.nominal(index, chip_scale.1)
         };
         let (mut chip, mut whole) = (Vector::ZERO, Vector::ZERO);
-        for k in 0..heights {
+        for k in 0..HEIGHTS {
             let (c, w) = machine.deflection_parts(&mut teeth, &state, band.at(k));
             chip = chip + c;
             whole = whole + w;
         }
-        let mean = |v: Vector| -v.scaled(Real::ratio(1, heights));
+        let mean = |v: Vector| -v.scaled(Real::ratio(1, HEIGHTS));
         let chip = mean(chip);
         let normal = path.samples().get(index).map_or(Vector::ZERO, |s| s.normal.times(machine.undersize));
         *node = Node { chip, edge: mean(whole) - chip + normal };

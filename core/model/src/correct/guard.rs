@@ -92,12 +92,10 @@ pub fn guarded_design(
     {
         round = round.saturating_add(1);
         if round == 1 {
-            pass(machine, wanted, made.nodes, workspace, &mut |_| ());
+            passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
         }
-        margins(machine, belief, wanted, made.nodes, workspace);
+        margins(machine, belief, wanted, workspace);
         state = Deviations::Current;
-        // The walls of the correction itself, beside the margins.
-        passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
         if workspace.profiles.iter().all(|p| missed(p, limit) <= MISSED) {
             break;
         }
@@ -109,15 +107,14 @@ pub fn guarded_design(
     }
     made.damped = None;
     if wanted.law == Law::Model {
-        let cut_anew = state == Deviations::Stale;
-        if cut_anew {
-            deviations(machine, belief, wanted, made.nodes, workspace);
+        if state == Deviations::Stale {
+            deviations(machine, belief, wanted, workspace);
         }
         hand_out(workspace.scratch, made.sigma);
         let both = [&mut *made.nodes, &mut *made.unguarded];
         made.damped = damp(machine.path, uncorrected, both, workspace.scratch);
         state = if made.damped.is_none() { Deviations::Current } else { Deviations::Stale };
-        if cut_anew || state == Deviations::Stale {
+        if state == Deviations::Stale {
             passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
         }
     }
@@ -146,10 +143,9 @@ pub fn guarded_given(
     let passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
     let mut state = Deviations::Stale;
     if limit(wanted).is_some() {
-        margins(machine, belief, wanted, made.nodes, workspace);
+        margins(machine, belief, wanted, workspace);
         state = Deviations::Current;
         hand_out(workspace.scratch, made.sigma);
-        pass(machine, wanted, made.nodes, workspace, &mut |_| ());
     }
     finish(machine, belief, wanted, (state, passage), made, workspace)
 }
@@ -182,9 +178,8 @@ fn finish(
         p.after = *wall;
     }
     if state == Deviations::Stale && !made.sigma.is_empty() {
-        deviations(machine, belief, wanted, made.nodes, workspace);
+        deviations(machine, belief, wanted, workspace);
         hand_out(workspace.scratch, made.sigma);
-        passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
     }
     passage
 }
@@ -192,7 +187,7 @@ fn finish(
 /// Hands out the deviations of the aimed error.
 fn hand_out(slots: &[Scratch], sigma: &mut [Offset]) {
     for (sigma, slot) in sigma.iter_mut().zip(slots) {
-        *sigma = slot.deviation().sigma_of_aimed;
+        *sigma = slot.deviation().aimed;
     }
 }
 
@@ -224,17 +219,16 @@ fn lift(machine: &Loop, limit: Offset, nodes: &mut [Node], workspace: &mut Desig
     settle_ends(machine.path, nodes);
 }
 
-/// Sets the margin of every wall to [`GUARD_SIGMAS`] standard deviations of its deepest height. The workspace holds the
-/// walls of the correction before, and its [`deviations`] afterwards.
+/// Sets the margin of every wall to [`GUARD_SIGMAS`] standard deviations of its deepest height. The workspace holds states and walls of
+/// the correction, and its [`deviations`] as well afterwards.
 fn margins(
     machine: &Loop,
     belief: (&Prior, &Fit),
     wanted: &Design,
-    nodes: &[Node],
     workspace: &mut DesignWorkspace<'_, impl WallReader>,
 ) {
-    deviations(machine, belief, wanted, nodes, workspace);
+    deviations(machine, belief, wanted, workspace);
     for (wall, slot) in workspace.profiles.iter_mut().zip(workspace.scratch.iter()) {
-        wall.set_margin(slot.deviation().sigma_of_deepest.scaled(Real::from_int(GUARD_SIGMAS)));
+        wall.set_margin(slot.deviation().deepest.scaled(Real::from_int(GUARD_SIGMAS)));
     }
 }

@@ -61,9 +61,19 @@ impl Band {
         self.from
             + (self.to - self.from) * Real::ratio(k.saturating_mul(2).saturating_add(1), HEIGHTS.saturating_mul(2))
     }
+
+    /// Heights of the engaged depth that its slices and the tip leave out: what lies outside the band, and the top.
+    pub(super) fn left_out(self) -> impl Iterator<Item = Real> {
+        let outside = move |h: &Real| *h < self.from || *h > self.to;
+        (0..HEIGHTS).map(|k| Self::WHOLE.at(k)).filter(outside).chain([Real::ONE])
+    }
 }
 
 impl Profile {
+    /// Beside a sample where a wall stands or not, of no height yet.
+    pub(super) fn unread(on_wall: bool) -> Self {
+        Self { lowest: Offset::MAX, highest: -Offset::MAX, on_wall, ..Self::default() }
+    }
     /// The error a target aims at. `max_gouge` wins over the target: no height of the engaged depth may end deeper than it,
     /// and the [margin](Self::margin) stays free.
     pub fn aim(&self, target: Target, max_gouge: Option<Offset>) -> Offset {
@@ -91,8 +101,13 @@ impl Profile {
         let steps = margin.nm().max(0).saturating_add(MARGIN_STEP).saturating_sub(1).checked_div(MARGIN_STEP);
         self.margin = u16::try_from(steps.unwrap_or(0)).unwrap_or(u16::MAX);
     }
+    /// Takes note of the error at a height of the band, but for the mean.
+    pub(super) fn note(&mut self, error: Offset) {
+        self.lowest = self.lowest.min(error);
+        self.highest = self.highest.max(error);
+    }
     /// Takes note of the error at a height that may lie outside the band.
-    fn deepen(&mut self, error: Offset) {
+    pub(super) fn deepen(&mut self, error: Offset) {
         let more = (self.lowest - error).nm();
         self.beneath = self.beneath.max(u32::try_from(more.max(0)).unwrap_or(u32::MAX));
     }
@@ -112,7 +127,7 @@ impl Profile {
         }
     }
     /// Moves the wall, where there is one, by the same at every height.
-    fn shift(&mut self, by: Offset) {
+    pub(super) fn shift(&mut self, by: Offset) {
         if self.on_wall {
             self.mean += by;
             self.lowest += by;
@@ -125,6 +140,11 @@ impl Profile {
     pub fn makers(&self, index: usize) -> impl Iterator<Item = usize> + '_ {
         let shifts = self.made_by.iter().filter(|_| self.on_wall);
         shifts.filter_map(move |shift| index.checked_add_signed(*shift as isize))
+    }
+    /// The one of them for a slice of the band; sample `index` itself where none is known.
+    pub(super) fn maker(&self, slice: i64, index: usize) -> usize {
+        let shift = usize::try_from(slice).ok().and_then(|slice| self.made_by.get(slice)).copied().unwrap_or_default();
+        index.checked_add_signed(shift.into()).unwrap_or(index)
     }
 }
 
@@ -153,7 +173,7 @@ pub fn profile(machine: &Loop, states: &[State], band: Band, displacements: &mut
 pub fn begin(machine: &Loop, profiles: &mut [Profile]) {
     for (p, sample) in profiles.iter_mut().zip(machine.path.samples().iter().skip(machine.path.first())) {
         let (margin, on_wall) = (p.margin, sample.on_wall);
-        *p = Profile { lowest: Offset::MAX, highest: -Offset::MAX, margin, on_wall, ..Profile::default() };
+        *p = Profile { margin, ..Profile::unread(on_wall) };
     }
 }
 
@@ -166,8 +186,7 @@ pub fn read_slice(machine: &Loop, slice: i64, displacements: &[Vector], profiles
             *slot = shift.clamp(i16::MIN.into(), i16::MAX.into()) as i16;
         }
         p.mean += wall.error;
-        p.lowest = p.lowest.min(wall.error);
-        p.highest = p.highest.max(wall.error);
+        p.note(wall.error);
     });
 }
 
@@ -195,9 +214,7 @@ pub(super) fn deepen(
     displacements: &mut [Vector],
     profiles: &mut [Profile],
 ) {
-    let outside = |h: &Real| *h < band.from || *h > band.to;
-    let heights = (0..HEIGHTS).map(|k| Band::WHOLE.at(k)).filter(outside);
-    for height in heights.chain([Real::ONE]) {
+    for height in band.left_out() {
         Envelope::displace(machine, states, height, displacements);
         read(machine, displacements, profiles, |_, p, wall| p.deepen(wall.error));
     }

@@ -4,6 +4,7 @@
 //! not depend on each other, so whoever has more than one processor may read them at the same time; the core has one.
 
 use super::profile::{Band, Profile, profile};
+use super::scratch::Scratch;
 use crate::cut::{Loop, Passage, State};
 use truepath_units::geometry::Vector;
 
@@ -28,6 +29,9 @@ pub trait WallReader {
         displacements: &mut [Vector],
         profiles: &mut [Profile],
     );
+
+    /// Hands out slots in pieces of a length, each with the index of its first slot: no piece depends on another.
+    fn each(&mut self, slots: &mut [Scratch], length: usize, work: impl Fn(usize, &mut [Scratch]) + Sync);
 }
 
 /// One height after the other.
@@ -56,6 +60,10 @@ impl<R: WallReader> WallReader for &mut R {
     ) {
         (**self).profile(machine, states, band, displacements, profiles);
     }
+
+    fn each(&mut self, slots: &mut [Scratch], length: usize, work: impl Fn(usize, &mut [Scratch]) + Sync) {
+        (**self).each(slots, length, work);
+    }
 }
 
 impl WallReader for InOrder {
@@ -82,5 +90,12 @@ impl WallReader for InOrder {
         profiles: &mut [Profile],
     ) {
         profile(machine, states, band, displacements, profiles);
+    }
+
+    fn each(&mut self, slots: &mut [Scratch], length: usize, work: impl Fn(usize, &mut [Scratch]) + Sync) {
+        let length = length.max(1);
+        for (k, piece) in slots.chunks_mut(length).enumerate() {
+            work(k.saturating_mul(length), piece);
+        }
     }
 }

@@ -11,17 +11,15 @@ use truepath_units::geometry::Vector;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Scratch([Offset; 4]);
 
-/// A wall and the standard deviations of its two errors.
-#[derive(Clone, Copy, Debug)]
+/// Standard deviations of a wall.
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Deviation {
-    /// The error that the target aims at.
+    /// Of the error that the target aims at.
     pub aimed: Offset,
-    /// Its standard deviation.
-    pub sigma_of_aimed: Offset,
-    /// The deepest height.
+    /// Of the deepest height.
     pub deepest: Offset,
-    /// Its standard deviation.
-    pub sigma_of_deepest: Offset,
+    /// Whether they are computed here, and not interpolated.
+    pub is_asked: bool,
 }
 
 /// What the largest error must outweigh for a whole correction.
@@ -47,7 +45,7 @@ impl From<Scratch> for Node {
 
 impl From<Deviation> for Scratch {
     fn from(wall: Deviation) -> Self {
-        Self([wall.aimed, wall.sigma_of_aimed, wall.deepest, wall.sigma_of_deepest])
+        Self([wall.aimed, wall.deepest, Offset::from_nm(wall.is_asked.into()), Offset::ZERO])
     }
 }
 
@@ -59,9 +57,9 @@ impl From<Doubt> for Scratch {
 
 impl Scratch {
     /// A slot that holds a [`Deviation`].
-    pub(super) const fn deviation(self) -> Deviation {
-        let Self([aimed, sigma_of_aimed, deepest, sigma_of_deepest]) = self;
-        Deviation { aimed, sigma_of_aimed, deepest, sigma_of_deepest }
+    pub(super) fn deviation(self) -> Deviation {
+        let Self([aimed, deepest, asked, _]) = self;
+        Deviation { aimed, deepest, is_asked: asked.nm() != 0 }
     }
 
     /// A slot that holds a [`Doubt`].

@@ -46,7 +46,7 @@ pub(super) fn damp(
     let samples = path.samples().iter().skip(path.first());
     for (slot, sample) in slots.iter_mut().zip(samples) {
         // Around a sharp inside corner the correction is no larger than beside it, or spares the wall.
-        let sigma = if sample.near_corner { Offset::ZERO } else { slot.deviation().sigma_of_aimed };
+        let sigma = if sample.near_corner { Offset::ZERO } else { slot.deviation().aimed };
         *slot = Doubt { outweighed: sigma.scaled(Real::from_int(SIGMAS)), sigma }.into();
     }
     Scratch::envelope(slots, SLOPE, path.is_closed());

@@ -149,12 +149,8 @@ impl<'a, D: Displacements> Envelope<'a, D> {
                 stride /= 2;
             }
         }
-        let (at, lowest) = (look.made_by, look.lowest);
-        let error = match (look.gap(at.saturating_sub(1)), look.gap(at.saturating_add(1))) {
-            (Some(before), Some(after)) => vertex(before, lowest, after),
-            _ => lowest,
-        };
-        Some(WallError { error, made_by: at })
+        let (made_by, lowest) = (look.made_by, look.lowest);
+        Some(WallError { error: lowest_about(made_by, lowest, |at| look.gap(at)), made_by })
     }
 }
 
@@ -169,6 +165,18 @@ struct Calm {
     per_change: i64,
     /// It must be less than this, nm.
     most: i64,
+}
+
+/// How far the cutter at sample `maker`, displaced, ends short of the wall point beside sample `index`, along its normal: the wall error there
+/// as long as no other position ends deeper. `None` when it passes beside, or there is no such sample.
+///
+/// What moves the machine a little moves the wall as it moves the cutter that made it: who makes it changes that in second order only.
+pub fn left_by(path: &Path, index: usize, maker: usize, displacement: Vector) -> Option<Offset> {
+    let (beside, at) = (path.samples().get(index)?, path.samples().get(maker)?);
+    let (ahead, across) = path.wall(beside).from(at.point + displacement).along_and_right(beside.normal);
+    let (radius, across) = (path.setup().radius.nm(), across.nm());
+    let square = radius.saturating_mul(radius).saturating_sub(across.saturating_mul(across));
+    (square > 0).then(|| ahead - Offset::from_nm(isqrt_rounded(square.unsigned_abs().into()) as i64))
 }
 
 /// A look along the path for the cutter position that ends deepest beside a wall point.
@@ -376,7 +384,19 @@ impl<'e, 'a, D: Displacements> Look<'e, 'a, D> {
     }
 }
 
-/// Lowest point of the parabola through three even places, the middle one being the lowest.
+/// The lowest gap within one sample of a cutter position, whose own is known; `gap` tells those of its neighbours.
+pub fn lowest_about(sample: usize, own: Offset, mut gap: impl FnMut(usize) -> Option<Offset>) -> Offset {
+    let (Some(before), Some(after)) = (gap(sample.saturating_sub(1)), gap(sample.saturating_add(1))) else {
+        return own;
+    };
+    let curvature = after - own + before - own;
+    if (after - before).abs() > curvature + curvature {
+        return own.min(before).min(after);
+    }
+    vertex(before, own, after)
+}
+
+/// Lowest point of the parabola through three even places, the middle one being the lowest or next to it.
 fn vertex(before: Offset, lowest: Offset, after: Offset) -> Offset {
     let slope = i128::from((after - before).nm());
     let curvature = i128::from((after - lowest + before - lowest).nm());
@@ -395,6 +415,17 @@ mod tests {
     use proptest::prelude::*;
     use std::vec::Vec;
     use truepath_units::geometry::{Block, Contour, Curve, Side};
+
+    #[test]
+    fn the_lowest_gap_is_no_farther_than_a_sample_from_the_position_that_is_asked_for() {
+        let about = |gaps: [i64; 3]| {
+            let gap = |at: usize| gaps.get(at).map(|nm| Offset::from_nm(*nm));
+            lowest_about(1, gap(1).unwrap(), gap).nm()
+        };
+        // A parabola with its vertex at the position, half a sample and one sample beside it, and beyond.
+        assert_eq!([about([800, 0, 800]), about([900, 100, 100]), about([400, 100, 0])], [0, 0, 0]);
+        assert_eq!([about([1000, 0, -999]), about([-50, 0, 60]), about([0, 0, 0])], [-999, -50, 0]);
+    }
 
     proptest! {
         /// A straight wall, an inside arc and an outside one; displacements from still to wild.

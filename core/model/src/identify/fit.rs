@@ -260,8 +260,12 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
         self.evaluate(table, theta, gate, points)
     }
 
-    /// Predicts the points of every cut with its own correction, and with what is its part's own.
-    fn predict(&self, table: &ForceTable, parameters: &Parameters, points: &mut Points<impl Predictor>) {
+    /// Predicts the points of every cut with its own correction, and with what is its part's own. The table, which is large, is made anew
+    /// where it is another machine's.
+    fn predict(&self, table: &mut ForceTable, parameters: &Parameters, points: &mut Points<impl Predictor>) {
+        if table.size_exponent() != parameters.coefficients.size_exponent {
+            table.tabulate(parameters.coefficients.size_exponent);
+        }
         let mut rest = &mut *points.observations;
         for (k, cut) in self.cuts.iter().enumerate() {
             let (own, others) = rest.split_at_mut(cut.points.min(rest.len()));
@@ -281,9 +285,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
         gate: Real,
         points: &mut Points<impl Predictor>,
     ) -> Real {
-        let parameters = self.prior.at(theta);
-        renew(table, &parameters);
-        self.predict(table, &parameters, points);
+        self.predict(table, &self.prior.at(theta), points);
         weighed(theta, gate, points)
     }
 
@@ -291,7 +293,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
     /// many parameters are done.
     fn linearised(
         &self,
-        table: &ForceTable,
+        table: &mut ForceTable,
         theta: &[Real; COUNT],
         points: &mut Points<impl Predictor>,
         observe: &mut dyn FnMut(usize),
@@ -319,12 +321,11 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
     /// parameter whose sign turns with the part has the same sensitivity with the other sign.
     fn differentiate(
         &self,
-        table: &ForceTable,
+        table: &mut ForceTable,
         theta: &[Real; COUNT],
         points: &mut Points<impl Predictor>,
         observe: &mut dyn FnMut(usize),
     ) {
-        let mut changed = ForceTable::BLANK;
         for (k, (parameter, sigma)) in Parameter::ALL.iter().zip(&self.prior.sigma).enumerate() {
             observe(k);
             let direct = |o: &Observation| match parameter {
@@ -345,18 +346,11 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
                 if let Some(t) = moved.get_mut(k) {
                     *t += side;
                 }
-                let parameters = self.prior.at(&moved);
-                let table = if parameters.coefficients.size_exponent == table.size_exponent() {
-                    table
-                } else {
-                    changed.tabulate(parameters.coefficients.size_exponent);
-                    &changed
-                };
                 // The prediction at the point itself is needed again: it is kept aside.
                 for o in points.observations.iter_mut() {
                     o.base = o.predicted;
                 }
-                self.predict(table, &parameters, points);
+                self.predict(table, &self.prior.at(&moved), points);
                 for o in points.observations.iter_mut() {
                     let change = (o.predicted - o.base).over(o.deviation()) / (side + side);
                     o.predicted = o.base;
@@ -380,11 +374,5 @@ fn weighed<P>(theta: &[Real; COUNT], gate: Real, points: &mut Points<P>) -> Real
 fn set(observation: &mut Observation, k: usize, value: Real) {
     if let Some(slot) = observation.sensitivity.get_mut(k) {
         *slot = value;
-    }
-}
-
-fn renew(table: &mut ForceTable, parameters: &Parameters) {
-    if table.size_exponent() != parameters.coefficients.size_exponent {
-        table.tabulate(parameters.coefficients.size_exponent);
     }
 }

@@ -225,10 +225,15 @@ fn the_deviation_handed_out_is_that_of_the_correction_itself_damped_guarded_or_g
     for (case, made) in [(&known, &free), (&unknown, &damped), (&known, &guarded)] {
         let expected = case.deviations(&made.nodes);
         assert!(expected.iter().any(|sigma| *sigma > 100.0));
-        // Columns that matter by less than a thousandth are left out, and every root is rounded.
-        for (found, expected) in made.sigma.iter().zip(&expected) {
-            assert!((found.nm() as f64 - expected).abs() < 25.0 + 0.002 * expected, "{} {expected}", found.nm());
-        }
+        // Columns that matter by less than a thousandth are left out, and every root is rounded; where the load changes fast, what lies
+        // between two places that are computed is found between them.
+        let off = |(found, expected): (&Offset, &f64)| {
+            let beyond = (found.nm() as f64 - expected).abs() - 25.0;
+            assert!(beyond < 0.08 * expected, "{} {expected}", found.nm());
+            beyond > 0.01 * expected
+        };
+        let between = made.sigma.iter().zip(&expected).map(off).filter(|off| *off).count();
+        assert!(between * 10 < expected.len(), "{between} of {}", expected.len());
     }
 }
 

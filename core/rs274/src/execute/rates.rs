@@ -33,7 +33,8 @@ impl Execution<'_, '_, '_> {
                 950 => FeedMode::PerRevolution,
                 _ => FeedMode::PerMinute,
             };
-            if mode != self.modal.feed_mode {
+            // LinuxCNC itself forgets the feed even where the mode stays.
+            if mode != self.modal.feed_mode || self.options.is_linuxcnc_itself() {
                 self.modal.feed = None;
                 self.modal.feed_mode = mode;
             }

@@ -1,7 +1,8 @@
 //! Which lines of a file are the program: what stands between the two `%`.
 //!
 //! `%` as the first character of a line begins and ends a program (ISO 6983); text outside is a leader or a trailer.
-//! Either may be missing, which is noted because a file that was cut off looks the same.
+//! A program may do without both and end with M2 or M30 alone, as LinuxCNC's do; one of the two by itself is noted, because a
+//! file that was cut off looks the same.
 
 use super::super::lexical::is_blank;
 use super::super::{Line, Lines, Span, WarningKind, Warnings};
@@ -15,7 +16,7 @@ pub(in super::super) struct Frame<'a> {
     close: u32,
     /// The first line with text outside.
     outside: Option<Line<'a>>,
-    /// Where a missing `%` is reported.
+    /// Where a missing `%` of the two is reported.
     last: Line<'a>,
 }
 
@@ -72,7 +73,7 @@ impl<'a> Frame<'a> {
 
     /// Notes what is missing and what is outside.
     pub(in super::super) fn warn(&self, warnings: &mut Warnings) {
-        if self.open == 0 || self.close == u32::MAX {
+        if (self.open == 0) != (self.close == u32::MAX) {
             warnings.note(WarningKind::PercentMissing, &self.last, self.last.span());
         }
         if let Some(line) = self.outside {

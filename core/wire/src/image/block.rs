@@ -169,6 +169,10 @@ impl Counted {
     pub const fn of(binding: &Binding, counter: u32) -> Self {
         Self { program_crc: binding.program_crc, feature: binding.feature, pass: binding.pass, counter }
     }
+    /// The counter of firmware, kept among those of passes; no feature of a program has this number.
+    pub const fn firmware(counter: u32) -> Self {
+        Self { program_crc: u32::from_le_bytes(*b"TPFW"), feature: u32::MAX, pass: u32::MAX, counter }
+    }
     /// Whether both count for the same pass.
     pub const fn is_same_pass(&self, other: &Self) -> bool {
         self.program_crc == other.program_crc && self.feature == other.feature && self.pass == other.pass

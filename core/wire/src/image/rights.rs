@@ -42,43 +42,52 @@ pub struct Rights {
     pub role: Role,
     /// Whether images that it signs are taken.
     pub signs: bool,
+    /// Whether firmware that it signs is taken. A message that is older than this right has none of it.
+    #[serde(skip)]
+    pub firmware: bool,
 }
 
-/// Everything: what a key has that was provisioned without a word of rights.
+/// What a key has that was provisioned without a word of rights: every role, and images. Firmware has to be said.
 impl Default for Rights {
     fn default() -> Self {
-        Self { role: Role::Engineer, signs: true }
+        Self { role: Role::Engineer, signs: true, firmware: false }
     }
 }
 
 const OPERATE: u32 = 1;
 const READ: u32 = 2;
 const SIGNS_NOTHING: u32 = 4;
+const FIRMWARE: u32 = 8;
 
 impl Rights {
-    /// As a word in the flash; 0 is everything.
+    /// As a word in the flash; 0 is every role, and images.
     pub const fn bits(self) -> u32 {
         let role = match self.role {
             Role::Engineer => 0,
             Role::Operate => OPERATE,
             Role::Read => READ,
         };
-        if self.signs { role } else { role | SIGNS_NOTHING }
+        (if self.signs { role } else { role | SIGNS_NOTHING }) | if self.firmware { FIRMWARE } else { 0 }
     }
     /// The rights of a word; of one that a later version may have written, none.
     pub const fn of(bits: u32) -> Self {
-        match bits {
-            0 | SIGNS_NOTHING => Self { role: Role::Engineer, signs: bits == 0 },
-            OPERATE | 5 => Self { role: Role::Operate, signs: bits == OPERATE },
-            READ => Self { role: Role::Read, signs: true },
-            _ => Self { role: Role::Read, signs: false },
+        let firmware = bits & FIRMWARE != 0;
+        match bits & !FIRMWARE {
+            0 => Self { role: Role::Engineer, signs: true, firmware },
+            SIGNS_NOTHING => Self { role: Role::Engineer, signs: false, firmware },
+            OPERATE => Self { role: Role::Operate, signs: true, firmware },
+            5 => Self { role: Role::Operate, signs: false, firmware },
+            READ => Self { role: Role::Read, signs: true, firmware },
+            6 => Self { role: Role::Read, signs: false, firmware },
+            _ => Self { role: Role::Read, signs: false, firmware: false },
         }
     }
 }
 
 impl fmt::Display for Rights {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}{}", self.role, if self.signs { ", signs images" } else { "" })
+        let (images, firmware) = (if self.signs { ", signs images" } else { "" }, self.firmware);
+        write!(f, "{}{images}{}", self.role, if firmware { ", signs firmware" } else { "" })
     }
 }
 
@@ -89,14 +98,14 @@ mod tests {
     #[test]
     fn rights_come_back_from_their_word_and_unknown_words_give_none() {
         for role in Role::ALL {
-            for signs in [false, true] {
-                let rights = Rights { role, signs };
+            for (signs, firmware) in [(false, false), (true, false), (false, true), (true, true)] {
+                let rights = Rights { role, signs, firmware };
                 assert_eq!(Rights::of(rights.bits()), rights);
             }
         }
         assert_eq!(Rights::of(0), Rights::default());
-        for bits in [3, 7, 8, u32::MAX] {
-            assert_eq!(Rights::of(bits), Rights { role: Role::Read, signs: false });
+        for bits in [3, 7, 11, 16, u32::MAX] {
+            assert_eq!(Rights::of(bits), Rights { role: Role::Read, signs: false, firmware: false });
         }
     }
 }

@@ -9,6 +9,7 @@ use super::device::Item;
 use super::settings::DeviceSettingsError;
 use crate::image::{ImageError, MOST_KEYS, MOST_KEYS_EVER, SignatureError};
 use crate::rewrite::{Mode, Refusal};
+use crate::update::UpdateError;
 
 /// Why a request had no effect; a mismatch carries both sides. The order of the variants is the number on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -96,6 +97,8 @@ pub enum Denial {
     KeysFull,
     /// Whoever asks may not, or is not let in.
     Access(AccessError),
+    /// A firmware update is not taken, or is in the way.
+    Update(UpdateError),
 }
 
 impl fmt::Display for Denial {
@@ -127,6 +130,7 @@ impl fmt::Display for Denial {
             Self::Untrusted(error) => error.fmt(f),
             Self::NotPresent => f.write_str("nobody is at the device: its button was not held at the last reset"),
             Self::Access(error) => error.fmt(f),
+            Self::Update(error) => error.fmt(f),
             Self::KeysFull => {
                 write!(
                     f,
@@ -146,6 +150,7 @@ impl fmt::Display for Item {
             Self::Program => "a program",
             Self::Job => "a job",
             Self::Probe => "a probe log",
+            Self::Firmware => "a firmware update",
         })
     }
 }

@@ -105,6 +105,8 @@ pub enum Item {
     Job,
     /// A probe log, to RAM.
     Probe,
+    /// A firmware update, over both image slots.
+    Firmware,
 }
 
 /// What an image slot holds.

@@ -31,7 +31,7 @@ pub struct LogEntry {
     pub value: u32,
     /// Logins that failed since the entry before; 65,535 and above: 65,535.
     pub refused: u16,
-    /// Counter of a signed image, below which none of its pass is taken any more; else 0.
+    /// Counter of a signed image or of firmware, below which none of its pass, or of firmware, is taken any more; else 0.
     pub counter: u32,
 }
 
@@ -66,11 +66,15 @@ pub enum Change {
     LoggedOut,
     /// A login failed: the first one since the entry before. Those behind it are counted in `refused` of the next entry.
     LoginRefused,
+    /// A firmware update was handed to the loader; the value is its name, the key that of its signer.
+    Installed,
+    /// The firmware on trial was kept; the value is its name, the key that of its signer.
+    Confirmed,
 }
 
 impl Change {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 16] = [
         Self::Activated,
         Self::Deactivated,
         Self::Configured,
@@ -85,6 +89,8 @@ impl Change {
         Self::LoggedIn,
         Self::LoggedOut,
         Self::LoginRefused,
+        Self::Installed,
+        Self::Confirmed,
     ];
     /// Its number.
     pub const fn number(self) -> u8 {
@@ -117,9 +123,13 @@ impl fmt::Display for LogEntry {
             }
             Change::LoggedOut => f.write_str("logged out")?,
             Change::LoginRefused => f.write_str("login refused, key")?,
+            Change::Installed => write!(f, "firmware {value:08x} handed to the loader")?,
+            Change::Confirmed => write!(f, "firmware {value:08x} confirmed")?,
         }
         match (self.change, self.key) {
-            (Change::Activated, Some(key)) => write!(f, ", signed by {key}, counter {}", self.counter),
+            (Change::Activated | Change::Installed | Change::Confirmed, Some(key)) => {
+                write!(f, ", signed by {key}, counter {}", self.counter)
+            }
             (Change::LoggedIn, Some(key)) => write!(f, ", which ended the session of {key}"),
             (_, Some(key)) => write!(f, " {key}"),
             (_, None) => Ok(()),

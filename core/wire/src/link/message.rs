@@ -11,7 +11,9 @@ use super::denial::Denial;
 use super::device::{DeviceKeys, DeviceStatus, Hello, Item, Progress, Slot};
 use super::log::{LOG_ENTRIES, LogEntry};
 use super::settings::DeviceSettings;
+use super::timing::Timing;
 use super::trace::{TRACE_SAMPLES, TraceSample};
+use super::update::UpdateStatus;
 use crate::image::{KeyId, PublicKey, Rights, Role};
 use crate::rewrite::ArmRequest;
 
@@ -148,6 +150,21 @@ pub enum Ask<'a> {
         /// What it is good for.
         rights: Rights,
     },
+    /// How regularly setpoints arrive and how fast they are answered.
+    Timing,
+    /// The program that runs, and where an update of it stands.
+    Update,
+    /// Has the loader start the program that was uploaded, at the next reset.
+    Install,
+    /// Keeps the program that is on trial.
+    Confirm,
+    /// As `ProvisionAs`; firmware that the key signs is taken as well.
+    ProvisionFirmware {
+        /// The key.
+        key: PublicKey,
+        /// What else it is good for.
+        rights: Rights,
+    },
 }
 
 impl Ask<'_> {
@@ -170,7 +187,10 @@ impl Ask<'_> {
             | Self::Challenge
             | Self::Login { .. }
             | Self::Logout
-            | Self::Session => Role::Read,
+            | Self::Session
+            | Self::Timing
+            | Self::Update
+            | Self::ProvisionFirmware { .. } => Role::Read,
             Self::AcknowledgeDrivesDisabled
             | Self::Arm(_)
             | Self::Disarm
@@ -184,7 +204,9 @@ impl Ask<'_> {
             | Self::Activate { .. }
             | Self::Deactivate
             | Self::Configure(_)
-            | Self::Compute => Role::Engineer,
+            | Self::Compute
+            | Self::Install
+            | Self::Confirm => Role::Engineer,
         }
     }
 }
@@ -258,4 +280,8 @@ pub enum Reply<'a> {
     },
     /// To `Session`.
     Session(DeviceSession),
+    /// To `Timing`.
+    Timing(Timing),
+    /// To `Update`.
+    Update(UpdateStatus),
 }

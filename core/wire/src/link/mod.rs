@@ -36,7 +36,9 @@ mod setpoint;
 mod settings;
 mod stream;
 mod stuffing;
+mod timing;
 mod trace;
+mod update;
 
 pub use access::{
     AccessError, DEVICE_ID_BYTES, DeviceSession, LOGIN_BYTES, MOST_TRIES, NONCE_BYTES, SESSION_SILENCE_US, SessionEnd,
@@ -58,7 +60,9 @@ pub use setpoint::{MAX_SETPOINT_BYTES, SetpointFrame, setpoint_bytes};
 pub use settings::{DeviceSetting, DeviceSettings, DeviceSettingsError};
 pub use stream::{Deframer, Framed};
 pub use stuffing::{MAX_STUFFED, stuff, unstuff};
+pub use timing::{STAMPS_AT_ONCE, Spread, Stamp, Stamps, TIMING_BINS, TIMING_EDGES_NS, Timing, TimingMeter};
 pub use trace::{TRACE_SAMPLES, Trace, TraceSample};
+pub use update::{Firmware, TRIAL_US, UpdateStage, UpdateStatus};
 
 /// Version of both links; a setpoint frame of another version is refused, and `Hello` tells it.
 pub const LINK_VERSION: u8 = 2;

@@ -4,7 +4,7 @@ use core::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::rewrite::{AXES, Rewriter, Settings, SettingsError};
+use crate::rewrite::{AXES, Settings, SettingsError};
 
 /// What `Configure` sets; kept over resets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -37,7 +37,7 @@ impl DeviceSettings {
         };
         range(DeviceSetting::Axes, self.axes.into(), 1, AXES as u32)?;
         range(DeviceSetting::Deadline, self.deadline_us, 10, 1_000_000)?;
-        Rewriter::new(self.rewriter, None).map_err(DeviceSettingsError::Rewriter)?;
+        self.rewriter.check().map_err(DeviceSettingsError::Rewriter)?;
         let ticks = self.rewriter.max_lost_frames.saturating_add(2);
         let patience = ticks.saturating_mul(1_000_000).div_ceil(self.rewriter.tick_hz.max(1));
         let least = self.deadline_us.saturating_add(1).max(patience);

@@ -38,3 +38,21 @@ impl Digest {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_digest_is_fnv_1a_of_64_bits() {
+        // Test vectors of its authors (Fowler, Noll, Vo).
+        let of = |text: &str| {
+            let mut digest = Digest::default();
+            digest.bytes(text.as_bytes());
+            digest.value()
+        };
+        assert_eq!(of(""), 0xcbf2_9ce4_8422_2325);
+        assert_eq!(of("a"), 0xaf63_dc4c_8601_ec8c);
+        assert_eq!(of("foobar"), 0x8594_4171_f739_67e8);
+    }
+}

@@ -172,6 +172,81 @@ mod tests {
     }
 
     #[test]
+    fn the_ratio_is_rounded_to_the_nearest_step_and_ends_at_four() {
+        // Long ways, whose own rounding counts for less than a step, at ratios from a sixteenth to eight.
+        let scale = FeedScale::new(&law(800_000, 2), 100);
+        for millirpm in [30_000u32, 60_000, 200_001, 1_500_000, 7_000_003] {
+            for way in (1_000_000u32..8_000_000).step_by(50_021) {
+                let turns_per_tick = f64::from(millirpm) / 60_000.0 / 100.0;
+                let expected = f64::from(way) / (turns_per_tick * 2.0 * 800_000.0) * f64::from(1 << SMOOTH_BITS);
+                let found = f64::from(scale.ratio(way, millirpm));
+                let steps = (found - expected.min(f64::from(MOST))).abs();
+                // Half a step, and what the reciprocal is short of.
+                assert!(steps <= 0.5 + expected * 2f64.powi(-27), "{way} {millirpm}: {found} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_slow_spindle_gives_every_ratio_up_to_four_and_four_beyond() {
+        // A small feed at a fast tick: the spindle's part of the ratio is large.
+        let scale = FeedScale::new(&law(5_000, 1), 20_000);
+        for millirpm in [1_000u32, 20_000, 60_000, 500_000] {
+            for way in 0..500u32 {
+                let turns_per_tick = f64::from(millirpm) / 60_000.0 / 20_000.0;
+                let expected = f64::from(way) / (turns_per_tick * 5_000.0);
+                let found = scale.ratio(way, millirpm) as f64 / f64::from(1 << SMOOTH_BITS);
+                // As above, where the word of the speed is full: one bit of the way's eight.
+                let tolerance = expected * (2e-6 + 1.0 / (128.0 * f64::from(way.max(1)))) + 2e-7;
+                assert!((found - expected.min(4.0)).abs() <= tolerance, "{way} {millirpm}: {found} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_ratio_within_the_dead_band_is_one_and_beyond_it_continues_from_there() {
+        let value = |away: i32| FeedRatio((1 << SMOOTH_BITS) + away).value();
+        let band = 1 << (SMOOTH_BITS - 12);
+        let step = 1 << (SMOOTH_BITS - RATIO_BITS);
+        for away in [-band, -1, 0, 1, band] {
+            assert_eq!(value(away), RATIO_ONE);
+        }
+        for steps in [1, 2, 1_000] {
+            assert_eq!(value(band + steps * step), RATIO_ONE + steps as u32);
+            assert_eq!(value(-band - steps * step), RATIO_ONE - steps as u32);
+        }
+    }
+
+    #[test]
+    fn smoothing_over_so_many_ticks_takes_in_that_part_of_a_change() {
+        let scale = FeedScale::new(&law(44_444, 6), 1_000);
+        let change = |smoothing| {
+            let mut ratio = FeedRatio::default();
+            ratio.update(scale, 3_333, 1_500_000, smoothing);
+            (1 << SMOOTH_BITS) - ratio.0
+        };
+        let whole = change(0);
+        assert!((whole - (1 << 23)).abs() < 1 << 11, "{whole}");
+        for smoothing in 1..=12 {
+            assert!((change(smoothing) - (whole >> smoothing)).abs() <= 1, "{smoothing}");
+        }
+    }
+
+    #[test]
+    fn a_way_beyond_its_range_counts_as_the_longest_and_one_back_as_none() {
+        let scale = FeedScale::new(&law(800_000, 8), 100);
+        let taken = |way| {
+            let mut ratio = FeedRatio::default();
+            ratio.update(scale, way, 6_000_000, 0);
+            ratio
+        };
+        let longest = (1 << 23) - 1;
+        assert_ne!(taken(longest), taken(longest - 2));
+        assert!([longest + 1, longest + 2, 1 << 24, i32::MAX].iter().all(|&way| taken(way) == taken(longest)));
+        assert!([-1, -6_667, i32::MIN].iter().all(|&way| taken(way) == FeedRatio(0)));
+    }
+
+    #[test]
     fn alternating_whole_nanometres_count_as_the_nominal_feed() {
         // 400 mm/min at 1 kHz is 6666.67 nm per tick.
         let scale = FeedScale::new(&law(44_444, 6), 1_000);

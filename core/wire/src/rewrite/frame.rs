@@ -228,15 +228,89 @@ mod tests {
         assert!(matches!(damaged.mapping(origin, 0), Err(Refusal::FrameDamaged { .. })));
         let bent = Frame { sine: 1 << 20, ..good }.sealed();
         assert!(matches!(bent.mapping(origin, 0), Err(Refusal::FrameNotRigid { .. })));
-        let mut twice = good;
-        twice.axes[1] = twice.axes[0];
-        assert!(matches!(twice.sealed().mapping(origin, 0), Err(Refusal::FrameAxes { .. })));
+    }
+
+    #[test]
+    fn no_two_of_x_y_and_z_may_be_one_axis_and_none_may_be_beyond_the_last() {
+        let of = |axes: [u8; 3]| {
+            let axes = axes.map(|axis| AxisMap { axis, reversed: false });
+            Frame { axes, ..Frame::identity() }.sealed().mapping(Point::from_nm(0, 0), 0).map(|_| ())
+        };
+        for [x, y, z] in [[4, 4, 2], [0, 3, 3], [5, 1, 5], [1, 1, 1], [6, 1, 2], [0, 6, 2], [0, 1, 6], [0, 1, 255]] {
+            assert_eq!(of([x, y, z]), Err(Refusal::FrameAxes { x, y, z }));
+        }
+        assert_eq!((of([5, 0, 3]), of([3, 5, 0])), (Ok(()), Ok(())));
+    }
+
+    #[test]
+    fn sine_and_cosine_may_be_as_far_from_one_angle_as_stated_and_no_farther() {
+        let of = |cosine, sine| Frame { cosine, sine, ..Frame::identity() }.sealed().mapping(Point::from_nm(0, 0), 0);
+        // c² + s² is 2⁶⁰ + 2³⁴.
+        assert!(of(TURN_ONE, 1 << 17).is_ok() && of(1 << 17, TURN_ONE).is_ok());
+        for (cosine, sine) in [(TURN_ONE, (1 << 17) + 1), (TURN_ONE + 8, 100), (TURN_ONE - 9, 0), (0, 0)] {
+            assert!(matches!(of(cosine, sine), Err(Refusal::FrameNotRigid { .. })), "{cosine} {sine}");
+        }
     }
 
     #[test]
     fn a_setpoint_in_another_room_is_no_place() {
         let mapping = Frame::identity().mapping(Point::from_nm(0, 0), 0).unwrap();
-        assert!(mapping.local(&[i64::MAX, 0, 0, 0, 0, 0]).is_none());
-        assert!(mapping.local(&[0, i64::MIN, 0, 0, 0, 0]).is_none());
+        let (least, most) = (-(1i64 << 31), (1i64 << 31) - 1);
+        assert!([least, most].iter().all(|&nm| mapping.local(&[nm, nm, nm, 0, 0, 0]).is_some()));
+        // One coordinate alone, any two, and all of them, equally far or not.
+        for far in [least - 1, most + 1, 1 << 40, i64::MIN, i64::MAX] {
+            for beyond in 1..8 {
+                let axes = [0, 1, 2, 3, 4, 5].map(|k| if beyond >> k & 1 == 1 { far } else { 0 });
+                assert!(mapping.local(&axes).is_none(), "{axes:?}");
+            }
+        }
+        assert!(mapping.local(&[0, 0, 0, i64::MAX, i64::MIN, 1 << 40]).is_some(), "other axes do not count");
+    }
+
+    #[test]
+    fn a_setpoint_whose_program_coordinates_leave_their_range_is_no_place() {
+        let (least, most) = (-(1i64 << 31), (1i64 << 31) - 1);
+        let local = |cosine, sine, axes: [i64; 3]| {
+            let frame = Frame { cosine, sine, ..Frame::identity() }.sealed();
+            let [x, y, z] = axes;
+            frame.mapping(Point::from_nm(0, 0), 0).unwrap().local(&[x, y, z, 0, 0, 0])
+        };
+        // Turned by an eighth, a corner of the machine's range lies beyond the program's, in X or in Y, alone or with Z.
+        let eighth = 759_250_125;
+        for z in [0, least - 1, most + 1] {
+            for (x, y) in [(most, most), (least, least), (most, least), (least, most)] {
+                assert!(local(eighth, eighth, [x, y, z]).is_none(), "{x} {y} {z}");
+            }
+        }
+        assert!(local(eighth, eighth, [most / 2, most / 2, 0]).is_some());
+        // A cosine above 1, as far as it may be, carries the ends of both over the ends of the range.
+        assert!(local(TURN_ONE + 7, 0, [least, least, 0]).is_none());
+        assert!(local(TURN_ONE + 7, 0, [least + 100, least + 100, 0]).is_some());
+    }
+
+    #[test]
+    fn a_frame_whose_origin_is_at_an_end_of_the_range_has_no_place_at_the_other_end() {
+        for (offset, axis) in [(i64::MAX, i64::MIN), (i64::MIN, i64::MAX)] {
+            let frame = Frame { offset_nm: [offset; 3], ..Frame::identity() }.sealed();
+            let mapping = frame.mapping(Point::from_nm(0, 0), 0).unwrap();
+            assert!(mapping.local(&[axis; AXES]).is_none() && mapping.local(&[offset; AXES]).is_none());
+        }
+    }
+
+    #[test]
+    fn the_checksum_covers_every_value_of_a_frame() {
+        let good = Frame::identity();
+        let mut others = [good; 11];
+        for k in 0..3 {
+            others[k].offset_nm[k] = 1 << 40;
+            others[3 + k].axes[k].axis ^= 4;
+            others[6 + k].axes[k].reversed = true;
+        }
+        others[9].cosine ^= 1;
+        others[10].sine = 1;
+        for (k, frame) in others.iter().enumerate() {
+            assert_ne!(frame.checksum(), good.crc, "{frame:?}");
+            assert!(others[..k].iter().all(|other| other.checksum() != frame.checksum()), "{frame:?}");
+        }
     }
 }

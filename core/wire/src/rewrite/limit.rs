@@ -190,14 +190,10 @@ fn sample(index: usize) -> u64 {
 fn braking_velocity(distance: u64, acceleration: i32) -> u32 {
     let a = u64::from(acceleration.unsigned_abs()).max(1);
     let whole = |n: u64| a.saturating_mul(n.saturating_mul(n.saturating_sub(1)) >> 1);
-    // A first guess from √(2d/a), then to the exact one.
-    let mut n = isqrt_rounded(u128::from(distance.saturating_mul(2).checked_div(a).unwrap_or(0))) as u64;
-    while n > 1 && whole(n) >= distance {
-        n = n.saturating_sub(1);
-    }
-    while whole(n.saturating_add(1)) < distance {
-        n = n.saturating_add(1);
-    }
+    // √(2d/a), rounded, is n, or one less where the division has dropped a rest.
+    let root = isqrt_rounded(u128::from(distance.saturating_mul(2).checked_div(a).unwrap_or(0))) as u64;
+    let more = root.saturating_add(1);
+    let n = if whole(more) < distance { more } else { root };
     let velocity = distance.saturating_add(whole(n)).checked_div(n).unwrap_or(0);
     u32::try_from(velocity).unwrap_or(u32::MAX)
 }

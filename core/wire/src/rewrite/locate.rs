@@ -149,7 +149,6 @@ pub(super) fn locate(image: &Image<'_>, from: u32, at: &Local) -> Option<Located
     }
     if let Some(c) = rest.first()
         && Way::new(b, at).dot(Way::between(b, c)) > 0
-        && foot.fraction < FRACTION_ONE
         && let Some(round) = corner(nodes.get(steps as usize..)?, at, &foot, ADVANCE_LIMIT.wrapping_sub(steps))
     {
         return Some(Located {
@@ -181,7 +180,7 @@ fn corner(nodes: &[Stored], at: &Local, here: &Foot, most: u32) -> Option<Locate
         return None;
     }
     let before = Node::decode(a).length as i32;
-    if near.fraction < FRACTION_ONE || most == 1 {
+    if near.fraction < FRACTION_ONE {
         return Some(Located { node: 1, foot: near, ahead: before.wrapping_add(near.along as i32) });
     }
     let (steps, length) = passed(next, at, most.wrapping_sub(1) as usize);

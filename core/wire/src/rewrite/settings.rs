@@ -103,7 +103,7 @@ impl Settings {
     }
 
     /// Every range as stated at the fields.
-    pub(super) fn check(&self) -> Result<(), SettingsError> {
+    pub(crate) fn check(&self) -> Result<(), SettingsError> {
         let range = |name, value: i64, low: i64, high: i64| {
             if (low..=high).contains(&value) { Ok(()) } else { Err(SettingsError::Range { name, value, low, high }) }
         };

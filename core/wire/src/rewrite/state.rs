@@ -82,12 +82,13 @@ impl State {
     pub const fn place(&self) -> Place {
         self.place
     }
-    /// Live feed per tooth over the nominal one, smoothed, units of 2⁻¹⁶; 1 while no correction is on.
+    /// Live feed per tooth over the nominal one, smoothed, units of 2⁻¹⁶; 1 until something is armed, then the last one
+    /// that was measured, over the end of its correction as well.
     #[inline]
     pub fn feed_ratio(&self) -> u32 {
         if self.mapping.is_some() { self.ratio.value() } else { RATIO_ONE }
     }
-    /// Machine axes of the program's X and Y; 0 and 1 while nothing is armed.
+    /// Machine axes of the program's X and Y, those of the last arming; 0 and 1 before it.
     #[inline]
     pub fn plane(&self) -> [usize; 2] {
         self.mapping.as_ref().map_or([0, 1], |mapping| mapping.plane())

@@ -8,7 +8,7 @@ use serde::Serialize;
 use truepath_wire::image::{Binding, DeviceClass, Role};
 use truepath_wire::link::{
     ActiveImage, Change, ComputeFailure, Computed, DeviceSettings, Item, PACKET_BYTES, Progress, Request, ResetCause,
-    Response, SessionEnd, Slot, Stage, encode,
+    Response, SessionEnd, Slot, Stage, UpdateStage, encode,
 };
 use truepath_wire::rewrite::{Mode, Settings};
 
@@ -95,8 +95,12 @@ fn types_have_the_fields_of_the_table_in_its_order() {
         format!("{:?}", log_entry()),
         format!("{:?}", session()),
         format!("{:?}", session().rights[0]),
+        format!("{:?}", update()),
+        format!("{:?}", update().running.unwrap()),
         format!("{:?}", sample()),
         format!("{:?}", sample().place),
+        format!("{:?}", timing()),
+        format!("{:?}", timing().arrivals),
         format!("{:?}", Progress::default()),
         format!("{computed:?}"),
         format!("{failure:?}"),
@@ -105,8 +109,8 @@ fn types_have_the_fields_of_the_table_in_its_order() {
     assert_eq!(rows.len(), printed.len());
     for (row, debug) in rows.iter().zip(printed) {
         let (name, mut found) = fields(&debug);
-        // Rights travel in `DeviceSession` alone.
-        found.retain(|field| name != "KeyRing" || field != "rights");
+        // Rights travel in `DeviceSession` alone, and that to sign firmware in requests and replies of its own.
+        found.retain(|field| (name != "KeyRing" || field != "rights") && (name != "Rights" || field != "firmware"));
         assert_eq!(quoted(&row[0]), [name]);
         // Types in the cell are written with a capital letter, fields with a small one.
         let listed: Vec<_> = quoted(&row[1]).into_iter().filter(|w| w.starts_with(char::is_lowercase)).collect();
@@ -135,13 +139,14 @@ fn enums_have_the_variants_of_the_table_in_its_order() {
     ];
     let expected = [
         ("Mode", names(first(&[Mode::Off, Mode::Bypass, Mode::Armed, Mode::Active, Mode::Hold, Mode::Fault]))),
-        ("Item", names(first(&[Item::Image, Item::Program, Item::Job, Item::Probe]))),
+        ("Item", names(first(&[Item::Image, Item::Program, Item::Job, Item::Probe, Item::Firmware]))),
         ("ResetCause", names(first(&causes))),
         ("DeviceClass", names(first(&DeviceClass::ALL))),
         ("Slot", names(first(&[Slot::Empty, Slot::Partial { length: 0, crc: 0, written: 0 }, Slot::Damaged, image]))),
         ("Change", names(first(&Change::ALL))),
         ("Role", names(first(&Role::ALL))),
         ("SessionEnd", names(first(&SessionEnd::ALL))),
+        ("UpdateStage", names(first(&UpdateStage::ALL))),
         ("Stage", names(first(&[Idle, Job, Program, Probe, Cut, Identify, Correct, Write, Ended]))),
     ];
     let rows = table(&page("link.md"), "Types", "| enum");

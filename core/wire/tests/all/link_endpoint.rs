@@ -265,6 +265,25 @@ fn a_check_says_what_arming_would_and_changes_nothing() {
 }
 
 #[test]
+fn an_answer_at_its_deadline_is_given_and_one_a_microsecond_later_is_not() {
+    let mut wire = Wire::bypass();
+    for (delay_us, given) in [(500, true), (501, false), (499, true)] {
+        wire.delay_us = delay_us;
+        assert_eq!(wire.stay().answer.is_some(), given, "{delay_us} us");
+    }
+    assert_eq!(wire.endpoint.counters().late, 1);
+}
+
+#[test]
+fn messages_are_counted_by_whether_they_were_damaged() {
+    let mut endpoint = Wire::reset().endpoint;
+    for damaged in [false, true, false, false] {
+        endpoint.count_message(damaged);
+    }
+    assert_eq!((endpoint.counters().messages, endpoint.counters().messages_damaged), (3, 1));
+}
+
+#[test]
 fn a_fault_is_told_once_and_settings_change_only_in_off() {
     let mut wire = Wire::active();
     assert_eq!(wire.endpoint.take_fault(), None);
@@ -273,6 +292,11 @@ fn a_fault_is_told_once_and_settings_change_only_in_off() {
     wire.stay();
     assert_eq!(wire.endpoint.counters().faults_of(Reason::EmergencyStop), 1);
     assert_eq!((wire.endpoint.take_fault(), wire.endpoint.take_fault()), (Some(Reason::EmergencyStop), None));
+    // Every fault is told with its number of times, no regular end is.
+    let told: Vec<_> = wire.endpoint.counters().by_fault().collect();
+    let faults = Reason::ALL.into_iter().filter(|reason| reason.is_fault());
+    assert_eq!(told, faults.map(|r| (r, u32::from(r == Reason::EmergencyStop))).collect::<Vec<_>>());
+    assert_eq!(told.len(), Reason::FAULTS);
     let settings = *wire.endpoint.settings();
     assert_eq!(wire.endpoint.configure(settings), Err(Refusal::State(Mode::Fault)));
     assert_eq!(Wire::reset().endpoint.configure(settings), Ok(()));

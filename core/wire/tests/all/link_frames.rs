@@ -139,6 +139,22 @@ proptest! {
 }
 
 #[test]
+fn what_is_too_short_or_too_long_to_be_stuffed_is_left_as_it_is() {
+    for length in [0, 1, MAX_STUFFED + 3, 300, 1_000] {
+        let mut packet = vec![7; length];
+        assert_eq!((stuff(&mut packet), &packet[..]), (0, &vec![7; length][..]));
+    }
+    for length in [2, MAX_STUFFED + 2] {
+        let mut packet = vec![7; length];
+        assert_eq!(stuff(&mut packet), length);
+        assert_eq!((usize::from(packet[0]), packet[length - 1]), (length - 1, 0));
+    }
+    // Whole ways, of 85 and of 127 bytes: it is the length alone.
+    assert_eq!(unstuff(&mut [85; MAX_STUFFED + 2]), None);
+    assert!(unstuff(&mut [127; MAX_STUFFED + 1]).is_some());
+}
+
+#[test]
 fn a_frame_of_another_length_kind_version_or_number_of_axes_is_refused_by_name() {
     let mut raw = [0; MAX_SETPOINT_BYTES + 1];
     let bytes = SetpointFrame { axes: 3, setpoint: Setpoint::default() }.encode(&mut raw).unwrap();

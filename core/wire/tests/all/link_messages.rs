@@ -3,9 +3,11 @@
 use crate::link_samples;
 use link_samples::*;
 use proptest::prelude::*;
+use truepath_wire::image::{KeyId, Role};
 use truepath_wire::link::{
-    Ask, CHUNK_BYTES, Denial, DeviceSetting, DeviceSettings, DeviceSettingsError, LinkError, MESSAGE_BYTES,
-    PACKET_BYTES, Reply, Request, Response, TRACE_SAMPLES, TraceSample, decode, encode,
+    Ask, CHUNK_BYTES, Change, Denial, DeviceSetting, DeviceSettings, DeviceSettingsError, LinkError, MESSAGE_BYTES,
+    PACKET_BYTES, Reply, Request, Response, TRACE_SAMPLES, TraceSample, decode, decode_request, encode, encode_request,
+    login_message,
 };
 use truepath_wire::rewrite::{Mode, Place, Reason, Setting, SettingsError, Status};
 
@@ -182,4 +184,41 @@ proptest! {
             prop_assert_eq!(decode::<Request>(&mut packet), Ok(request));
         }
     }
+}
+
+#[test]
+fn a_request_comes_back_with_the_number_of_its_session_and_nothing_else_may_stand_behind_it() {
+    for (name, ask) in asks() {
+        let request = Request { id: 300, ask };
+        for session in [None, Some(0), Some(1), Some(0x0123_4567_89ab_cdef), Some(u64::MAX)] {
+            let mut packet = vec![0xaa; PACKET_BYTES];
+            let bytes = encode_request(&request, session, &mut packet).unwrap();
+            assert_eq!(packet[..bytes].iter().position(|&b| b == 0), Some(bytes - 1), "0x00 only at the end");
+            assert_eq!(decode_request(&mut packet[..bytes]), Ok((request, session)), "{name}");
+        }
+    }
+    // The number is little endian; one that is cut off or too long is none.
+    let known = [0xac, 0x02, 0];
+    let behind = |bytes: &[u8]| {
+        let mut packet = sealed(&[&known[..], bytes].concat());
+        decode_request(&mut packet).map(|(_, session)| session)
+    };
+    assert_eq!(behind(&[1, 2, 0, 0, 0, 0, 0, 0]), Ok(Some(0x201)));
+    for length in (1..=16).filter(|length| *length != 8) {
+        assert_eq!(behind(&vec![7; length]), Err(LinkError::Content { id: 300 }), "{length} bytes");
+    }
+}
+
+#[test]
+fn what_is_signed_to_log_in_is_text_device_challenge_key_and_role() {
+    let expected = [&b"truepath login 1"[..], &[1; 12], &[2; 32], &[3; 8], &[2]].concat();
+    assert_eq!(login_message(&[1; 12], &[2; 32], KeyId([3; 8]), Role::Engineer)[..], expected[..]);
+}
+
+#[test]
+fn every_change_of_the_log_comes_back_from_its_number_and_no_other_number_is_one() {
+    for (number, change) in Change::ALL.into_iter().enumerate() {
+        assert_eq!((change.number(), Change::of(number as u8)), (number as u8, Some(change)));
+    }
+    assert!((Change::ALL.len() as u8..=255).all(|number| Change::of(number).is_none()));
 }

@@ -135,6 +135,24 @@ fn too_fast_a_pace_disarms_and_is_counted() {
 }
 
 #[test]
+fn a_window_of_two_thirds_of_its_time_is_permitted_and_one_a_microsecond_shorter_is_not() {
+    // 21,334 µs for 32 ticks of 1 ms, whatever frame the window begins with.
+    for (last_us, permitted) in [(657, true), (656, false)] {
+        let mut wire = Wire::armed();
+        for i in 0..96 {
+            wire.tick_us = if i % 32 == 31 { last_us } else { 667 };
+            wire.stay();
+        }
+        let expected = if permitted { (Mode::Armed, Reason::None) } else { (Mode::Bypass, Reason::FrameRate) };
+        assert_eq!((wire.endpoint.mode(), wire.endpoint.state().reason()), expected);
+        // Arming has the same bound.
+        let _ = wire.endpoint.disarm(&wire.rewriter);
+        wire.request.part_serial += 1;
+        assert_eq!(refusal(&wire).is_none(), permitted);
+    }
+}
+
+#[test]
 fn the_refusals_have_the_numbers_and_sentences_a_person_needs() {
     let unknown = Refusal::FrameRate { tick_hz: 1_000, interval_ns: 0 };
     let fast = Refusal::FrameRate { tick_hz: 1_000, interval_ns: 50_000 };

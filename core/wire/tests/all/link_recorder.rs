@@ -86,6 +86,25 @@ fn released_it_runs_again_from_nothing() {
 }
 
 #[test]
+fn for_frames_of_another_length_it_begins_from_nothing() {
+    let mut buffer = [0; 4 * BYTES];
+    let mut recorder = Recorder::new(&mut buffer, BYTES, 3);
+    recorder.record(&frame(1));
+    recorder.fault(Reason::Silence);
+    // Of twice the length there is room for two, of which one is from before the fault.
+    recorder.restart(2 * BYTES);
+    assert_eq!((recorder.is_frozen(), recorder.total()), (false, 0));
+    for number in 1..=3 {
+        recorder.record(&frame(9));
+        recorder.record(&[number; 2 * BYTES]);
+    }
+    recorder.fault(Reason::Abort);
+    recorder.record(&[4; 2 * BYTES]);
+    assert!(recorder.is_frozen());
+    assert_eq!(numbers(&recorder, 10_000), [3, 3, 4, 4], "two frames, in pieces of the old length");
+}
+
+#[test]
 fn a_fault_is_never_recorded_over_and_frames_of_another_length_are_passed_over() {
     let mut buffer = [0; 4 * BYTES];
     let mut recorder = Recorder::new(&mut buffer, BYTES, 1_000);

@@ -45,6 +45,20 @@ fn more_answers_in_a_row_that_nobody_fetched_than_may_be_lost_end_the_correction
 }
 
 #[test]
+fn an_answer_is_due_from_the_frame_on_until_it_is_given_or_late() {
+    for late in [false, true] {
+        let mut wire = Wire::bypass();
+        assert_eq!(wire.endpoint.due(), None);
+        let mut packet = wire.packet([1, 2, 3]);
+        packet.pop();
+        assert!(wire.endpoint.packet(&wire.rewriter, &mut packet, wire.now_us).is_accepted());
+        assert_eq!(wire.endpoint.due().map(|output| output.axes), Some([1, 2, 3, 0, 0, 0]));
+        let given = wire.endpoint.answer(wire.now_us + if late { 501 } else { 500 }, &mut [0; 100]);
+        assert_eq!((given.is_some(), wire.endpoint.due()), (!late, None));
+    }
+}
+
+#[test]
 fn the_answer_is_due_the_deadline_after_the_arrival_of_its_frame() {
     let mut wire = Wire::bypass();
     wire.stay();

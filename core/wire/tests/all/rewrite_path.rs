@@ -2,7 +2,7 @@
 
 use crate::rewrite_support;
 use rewrite_support::*;
-use truepath_wire::rewrite::{Digest, Flags, Mode, Reason, Settings, Status};
+use truepath_wire::rewrite::{ADVANCE_LIMIT, Digest, Flags, Mode, Output, Reason, Settings, Status};
 
 /// The table at a way from the start of a path with even nodes, nm, at a chip factor.
 fn table(s_nm: f64, factor: f64) -> [f64; 2] {
@@ -24,6 +24,7 @@ fn on_an_exact_run_the_correction_is_that_of_the_table_to_a_nanometre() {
         for axis in 0..2 {
             assert!((f64::from(out.correction_nm[axis]) - expected[axis]).abs() <= 1.0, "{x}: {out:?} {expected:?}");
         }
+        assert!(!out.status.has(Status::SATURATED), "no correction of an image is beyond its clamp");
         assert_eq!(out.axes[2..], m.next.axes[2..]);
     }
 }
@@ -32,7 +33,9 @@ fn on_an_exact_run_the_correction_is_that_of_the_table_to_a_nanometre() {
 fn the_chip_part_follows_the_live_feed_and_the_edge_part_does_not() {
     // Half the feed, nominal spindle; then nominal feed, 5/4 of the spindle speed.
     for (way, spindle, ratio) in [(FEED / 2, SPINDLE, 0.5), (FEED, SPINDLE / 4 * 5, 0.8)] {
-        let mut m = Machine::on(straight()).active();
+        let m = Machine::on(straight());
+        assert_eq!(m.state.feed_ratio(), 1 << 16, "nothing is armed");
+        let mut m = m.active();
         m.next.spindle_millirpm = spindle;
         let factor = f64::powf(ratio, 0.75);
         for (tick, &(x, y)) in along(&straight(), way).iter().enumerate() {
@@ -44,6 +47,8 @@ fn the_chip_part_follows_the_live_feed_and_the_edge_part_does_not() {
                     assert!(error.abs() < 100.0, "{x}: {error} of {expected:?}");
                 }
                 assert!(!out.status.has(Status::FADED));
+                let told = f64::from(m.state.feed_ratio()) / 65_536.0;
+                assert!((told - ratio).abs() < 1e-3, "{told}");
             }
         }
     }
@@ -132,6 +137,78 @@ fn a_blended_corner_is_followed_from_one_leg_to_the_other() {
     assert_eq!((out.mode, out.place.node, out.place.fraction), (Mode::Active, 99, 1 << 30));
 }
 
+/// A leg of so many segments along X and one of 2 mm along Y, active at the start.
+fn corner(segments: i64) -> Machine {
+    let mut points: Vec<_> = (0..=segments).map(|i| (i * MM / 10, 0)).collect();
+    points.extend((1..=20).map(|i| (segments * MM / 10, i * MM / 10)));
+    Machine::on(points).active()
+}
+
+/// Node and place in the segment, thousandths.
+fn place(out: &Output) -> (u32, u64) {
+    (out.place.node, (u64::from(out.place.fraction) * 1_000 + (1 << 29)) >> 30)
+}
+
+#[test]
+fn a_setpoint_on_a_node_has_that_node_as_its_place_and_the_last_one_the_end_of_the_last_segment() {
+    let mut m = Machine::on(straight()).active();
+    for i in (0..100).chain((50..99).rev()).chain(50..100) {
+        for _ in 0..3 {
+            let out = m.send(i * MM / 10, 0, PASS);
+            if out.mode == Mode::Fault {
+                // Back by more than the tolerance.
+                return;
+            }
+            assert_eq!(place(&out), (i as u32, 0));
+        }
+        if i == 99 {
+            for _ in 0..3 {
+                assert_eq!(place(&m.send(10 * MM, 0, PASS)), (99, 1_000));
+            }
+        }
+    }
+    panic!("going back was not noticed");
+}
+
+#[test]
+fn inside_a_corner_the_place_is_on_the_nearer_leg_and_on_the_first_when_both_are_as_near() {
+    let inside = [(20, 50, (8, 500)), (49, 50, (8, 500)), (50, 50, (8, 500)), (51, 50, (9, 510)), (99, 1, (9, 990))];
+    for (y, left, expected) in inside {
+        let mut m = corner(9);
+        m.send(700_000, 0, PASS);
+        assert_eq!(place(&m.send(900_000 - left * 1_000, y * 1_000, PASS)), expected, "{y} {left}");
+    }
+    // Farther along the next leg than its first segment, in one tick.
+    assert_eq!(place(&corner(3).send(280_000, 250_000, PASS)), (5, 500));
+}
+
+#[test]
+fn round_a_corner_sharper_than_a_right_angle_the_place_is_that_of_the_setpoint() {
+    let mut points: Vec<_> = (0..=10).map(|i| (i * MM / 10, 0)).collect();
+    points.extend((1..=20).map(|i| (MM - i * 70_711, i * 70_711)));
+    let mut m = Machine::on(points.iter().copied()).active();
+    for (x, y) in along(&points, FEED) {
+        let out = m.send(x, y, PASS);
+        assert_eq!((out.mode, out.reason), (Mode::Active, Reason::None));
+        let (a, b) = (points[out.place.node as usize], points[out.place.node as usize + 1]);
+        let part = |a: i64, b: i64| a + (((b - a) * i64::from(out.place.fraction)) >> 30);
+        assert!((part(a.0, b.0) - x).abs() < 3 && (part(a.1, b.1) - y).abs() < 3, "{x} {y}: {:?}", out.place);
+    }
+}
+
+#[test]
+fn the_place_goes_on_by_no_more_segments_in_a_tick_than_the_limit() {
+    let mut m = Machine::on(straight()).active();
+    assert_eq!(place(&m.send(990_000, 0, PASS)), (ADVANCE_LIMIT, 1_000));
+    assert_eq!(place(&m.stay()), (9, 900));
+    // Nor round a corner, where the next leg is nearer.
+    let mut m = corner(9);
+    assert_eq!(place(&m.send(850_000, 80_000, PASS)), (ADVANCE_LIMIT, 500));
+    assert_eq!(place(&m.stay()), (9, 800));
+    // The corner one segment earlier takes the last one.
+    assert_eq!(place(&corner(8).send(750_000, 180_000, PASS)), (ADVANCE_LIMIT, 1_000));
+}
+
 #[test]
 fn a_step_of_several_segments_round_a_corner_arrives_in_one_tick() {
     let mut points: Vec<_> = (0..=50).map(|i| (i * MM / 10, 0)).collect();
@@ -179,4 +256,20 @@ fn a_large_correction_raises_the_warning() {
         warned += u32::from(large);
     }
     assert!(warned > 100);
+}
+
+#[test]
+fn a_correction_that_is_not_yet_where_it_should_be_is_told() {
+    let mut m = Machine::on(straight()).armed();
+    let [cx, cy, ex, ey] = profile(0);
+    let full = [(cx + ex) as i32, (cy + ey) as i32];
+    let mut lagging = 0;
+    for _ in 0..100 {
+        let out = m.send(0, 0, GATE);
+        let there = out.correction_nm[..2] == full;
+        assert!(there || out.status.has(Status::LAGGING), "{out:?}");
+        lagging += u32::from(out.status.has(Status::LAGGING));
+    }
+    assert!((5..50).contains(&lagging), "{lagging}");
+    assert_eq!(m.stay().correction_nm[..2], full);
 }

@@ -30,6 +30,41 @@ fn what_is_refused_in_off_says_why_the_drives_were_dropped() {
 }
 
 #[test]
+fn the_reason_why_the_drives_were_dropped_stays_over_the_acknowledgement_until_the_next_arming() {
+    let mut m = Machine::on(straight()).active();
+    m.next.flags = Flags::default();
+    m.forward(1);
+    m.rewriter.power_off(&mut m.state, Reason::Silence);
+    m.stay();
+    m.acknowledge();
+    for _ in 0..3 {
+        let out = m.stay();
+        assert_eq!((out.mode, out.reason, m.state.reason()), (Mode::Bypass, Reason::Silence, Reason::Silence));
+    }
+    m.request.part_serial += 1;
+    m.rewriter.arm(&mut m.state, &m.request).unwrap();
+    assert_eq!(m.stay().reason, Reason::None);
+}
+
+#[test]
+fn a_flag_is_set_by_setting_it_however_often_and_no_other() {
+    let all = [
+        Flags::DRIVES_ENABLED,
+        Flags::FEED_HOLD,
+        Flags::SPINDLE_LOADED,
+        Flags::ABORT,
+        Flags::EMERGENCY_STOP,
+        Flags::PROGRAM_END,
+        Flags::TOOL_CHANGE,
+    ];
+    for flag in all {
+        let once = Flags::default().with(flag);
+        assert_eq!(once.with(flag), once);
+        assert!(all.iter().all(|&other| once.has(other) == (other == flag)), "{flag:?}");
+    }
+}
+
+#[test]
 fn after_power_up_nothing_goes_out_until_the_drives_are_acknowledged_as_disabled() {
     let mut m = Machine::on(straight());
     for _ in 0..5 {
@@ -284,7 +319,9 @@ fn a_frame_with_offset_turn_and_exchanged_axes_corrects_the_right_axes() {
     m.request.frame = frame.sealed();
     m.next.frame_crc = m.request.frame.crc;
     m.acknowledge();
+    assert_eq!(m.state.plane(), [0, 1]);
     m.rewriter.arm(&mut m.state, &m.request).unwrap();
+    assert_eq!(m.state.plane(), [1, 0]);
     let mut out = None;
     for z in [CLEAR, GATE, GATE].into_iter().chain([PASS; 200]) {
         let [a, b, c] = m.request.frame.machine_nm(0, 0, z);

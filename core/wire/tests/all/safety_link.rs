@@ -172,6 +172,7 @@ fn silence() {
         wire.now_us += TICK_US;
         wire.endpoint.watch(&wire.rewriter, wire.now_us);
         ticks += 1;
+        assert!(Some(ticks) <= row.noticed, "{ticks} ticks");
     }
     assert_eq!((Some(ticks), row.out), (row.noticed, Some(0)));
     assert!(!wire.endpoint.drive_enable());

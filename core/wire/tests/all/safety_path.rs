@@ -210,14 +210,15 @@ fn fades(event: &str, mut wire: Wire, mut cause: impl FnMut(&mut Wire), gone: im
         if wire.forward(1).output().status.has(Status::FADED) {
             break;
         }
+        assert!(Some(noticed) < row.noticed, "not noticed after {noticed} ticks");
     }
     assert_eq!(Some(noticed), row.noticed);
     let mut out = 1;
     while wire.forward(1).output().correction_nm != [0; 6] {
         cause(&mut wire);
         out += 1;
+        assert!(Some(out) <= row.out, "{out} ticks");
     }
-    assert!(Some(out) <= row.out, "{out} ticks");
     assert!(Some(out + 5) > row.out, "the table says more than it takes: {out} ticks");
     assert_eq!((wire.endpoint.mode(), wire.endpoint.state().reason()), (Mode::Active, Reason::None));
     gone(&mut wire);

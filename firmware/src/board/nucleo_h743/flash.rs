@@ -1,9 +1,17 @@
-//! Bank 2 of the flash of the STM32H743: eight sectors of 128 KiB, words of 32 bytes that are programmed once.
+//! The flash of the STM32H743: two banks of eight sectors of 128 KiB, words of 32 bytes that are programmed once.
 //!
-//! The program lies in bank 1, so an erase of bank 2, up to 4 s (DS12110), stalls neither code nor interrupts. The
+//! | sectors of [`crate::flash`] | bank | sectors of the bank |
+//! |---|---|---|
+//! | 0…7: image slots, ledger | 2 | 0…7 |
+//! | 8, 9: what the loader remembers | 1 | 6, 7 |
+//! | 10…14: the program | 1 | 1…5 |
+//!
+//! Sector 0 of bank 1 is the loader's own. The program lies in bank 1, so an erase of bank 2, up to 4 s (DS12110), stalls
+//! neither code nor interrupts. One of bank 1 stalls both until it is over: the program erases only what the loader remembers,
+//! in `Off`, and the watchdog waits meanwhile. The
 //! drivers of the HAL disable interrupts during an erase and write the error flags of the wrong register; this one
 //! waits with interrupts on. A word torn by a brown-out fails its ECC when it is read and the bus then faults
-//! (RM0433, 4.7.10): [`Bank2`] reads with that fault masked and gives [`FlashError::Ecc`] instead.
+//! (RM0433, 4.7.10): [`BoardFlash`] reads with that fault masked and gives [`FlashError::Ecc`] instead.
 //!
 //! Registers and sequence: RM0433, 4.3.8 to 4.3.10.
 
@@ -14,16 +22,19 @@ use embassy_stm32::pac::FLASH;
 use embassy_stm32::pac::flash::regs::Sr;
 use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash};
 
-/// Where bank 2 is read.
-const BASE: usize = 0x0810_0000;
-/// Bytes of the bank.
-const CAPACITY: usize = 1 << 20;
+use super::watchdog;
+use crate::flash::{self, FLASH_BYTES, SECTOR_BYTES, WORD_BYTES};
+
+/// Where bank 1 is read; bank 2 lies behind it.
+const BASE: usize = 0x0800_0000;
+/// Bytes of a bank.
+const BANK_BYTES: usize = 1 << 20;
 /// Bytes of a sector.
-const SECTOR: usize = 128 << 10;
+const SECTOR: usize = SECTOR_BYTES;
 /// Bytes of a flash word.
-const WORD: usize = 32;
-/// Index of bank 2 in the register block.
-const BANK: usize = 1;
+const WORD: usize = WORD_BYTES;
+/// Index of bank 1 in the register block, which the program runs from.
+const PROGRAM_BANK: usize = 0;
 /// Keys that open the control register.
 const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
 /// Bit of the configuration and control register by which priorities −1 and −2 ignore bus faults of data (ARMv7-M
@@ -35,7 +46,7 @@ const BFHFNMIGN: u32 = 1 << 8;
 pub enum FlashError {
     /// An address is not at the start of a word or sector.
     Unaligned,
-    /// Beyond the bank.
+    /// Beyond the flash, or beyond what the program may write.
     OutOfBounds,
     /// A sector is write protected.
     Protected,
@@ -55,40 +66,72 @@ impl NorFlashError for FlashError {
     }
 }
 
-/// Bank 2. One owner at a time: it is made once from the flash peripheral.
+/// The flash. One owner at a time: it is made once from the flash peripheral.
 #[derive(Debug)]
-pub struct Bank2(());
+pub struct BoardFlash {
+    /// The end of what may be written, and of what there is.
+    writable: usize,
+    capacity: usize,
+}
 
-impl Bank2 {
-    /// Takes the flash peripheral, so that nobody else writes.
+/// Where a byte lies.
+#[derive(Clone, Copy)]
+struct Place {
+    bank: usize,
+    sector: usize,
+    address: usize,
+}
+
+/// The place of an offset in the order of [`crate::flash`].
+const fn place(offset: usize) -> Place {
+    let (bank, sector) = match offset / SECTOR {
+        sector @ 0..8 => (1, sector),
+        sector @ 8..10 => (PROGRAM_BANK, sector - 2),
+        sector => (PROGRAM_BANK, sector - 9),
+    };
+    Place { bank, sector, address: BASE + bank * BANK_BYTES + sector * SECTOR + offset % SECTOR }
+}
+
+impl BoardFlash {
+    /// Takes the flash peripheral, so that nobody else writes: the program, which does not write to itself. One that starts by itself takes
+    /// the sectors of the loader as well.
     pub fn new(_flash: embassy_stm32::Peri<'static, embassy_stm32::peripherals::FLASH>) -> Self {
-        Self(())
+        if cfg!(feature = "updatable") {
+            Self { writable: flash::BANK_BYTES, capacity: FLASH_BYTES }
+        } else {
+            let end = flash::LEDGER_SECTORS.end() as usize;
+            Self { writable: end, capacity: end }
+        }
+    }
+    /// The same for the loader, which writes the program.
+    pub fn of_loader(_flash: embassy_stm32::Peri<'static, embassy_stm32::peripherals::FLASH>) -> Self {
+        Self { writable: FLASH_BYTES, capacity: FLASH_BYTES }
     }
 
-    fn within(offset: u32, length: usize) -> Result<usize, FlashError> {
+    fn within(offset: u32, length: usize, end: usize) -> Result<usize, FlashError> {
         let offset = offset as usize;
         match offset.checked_add(length) {
-            Some(end) if end <= CAPACITY => Ok(offset),
+            Some(last) if last <= end => Ok(offset),
             _ => Err(FlashError::OutOfBounds),
         }
     }
 
-    /// Runs one operation with the control register open.
-    fn unlocked<R>(&mut self, operation: impl FnOnce() -> R) -> R {
-        let bank = FLASH.bank(BANK);
-        if bank.cr().read().lock() {
-            KEYS.iter().for_each(|key| bank.keyr().write_value(*key));
+    /// Runs one operation with the control register of a bank open.
+    fn unlocked<R>(&mut self, bank: usize, operation: impl FnOnce() -> R) -> R {
+        let registers = FLASH.bank(bank);
+        if registers.cr().read().lock() {
+            KEYS.iter().for_each(|key| registers.keyr().write_value(*key));
         }
-        clear();
+        clear(bank);
         let result = operation();
-        bank.cr().modify(|w| w.set_lock(true));
+        registers.cr().modify(|w| w.set_lock(true));
         result
     }
 }
 
-/// Clears every error flag: each has a bit of its own in the clear register.
-fn clear() {
-    FLASH.bank(BANK).ccr().write(|w| {
+/// Clears every error flag of a bank: each has a bit of its own in the clear register.
+fn clear(bank: usize) {
+    FLASH.bank(bank).ccr().write(|w| {
         w.set_clr_eop(true);
         w.set_clr_wrperr(true);
         w.set_clr_pgserr(true);
@@ -101,9 +144,9 @@ fn clear() {
 }
 
 /// Waits for the end of an operation, interrupts on.
-fn finished() -> Result<(), FlashError> {
+fn finished(bank: usize) -> Result<(), FlashError> {
     let status: Sr = loop {
-        let status = FLASH.bank(BANK).sr().read();
+        let status = FLASH.bank(bank).sr().read();
         if !status.bsy() && !status.qw() && !status.wbne() {
             break status;
         }
@@ -117,37 +160,41 @@ fn finished() -> Result<(), FlashError> {
     }
 }
 
-impl ErrorType for Bank2 {
+impl ErrorType for BoardFlash {
     type Error = FlashError;
 }
 
-impl ReadNorFlash for Bank2 {
+impl ReadNorFlash for BoardFlash {
     const READ_SIZE: usize = 1;
 
     fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), FlashError> {
-        let start = Self::within(offset, bytes.len())?;
-        clear();
+        let mut offset = Self::within(offset, bytes.len(), self.capacity)?;
         // A word at a time, so that the fault mask, which holds off every interrupt, is short.
-        let mut at = BASE.wrapping_add(start);
-        for piece in bytes.chunks_mut(WORD) {
+        let mut rest = bytes;
+        while !rest.is_empty() {
+            let Place { bank, address, .. } = place(offset);
+            let most = rest.len().min(WORD - offset % WORD);
+            let (piece, behind) = rest.split_at_mut(most);
+            clear(bank);
             masked(|| {
-                for byte in piece.iter_mut() {
-                    // SAFETY: `within` keeps the address inside bank 2, which is always mapped and readable; a failed
+                for (byte, at) in piece.iter_mut().zip(address..) {
+                    // SAFETY: `within` keeps the address inside the flash, which is always mapped and readable; a failed
                     // ECC faults the bus, which `masked` lets pass.
                     *byte = unsafe { core::ptr::read_volatile(at as *const u8) };
-                    at = at.wrapping_add(1);
                 }
             });
-            if FLASH.bank(BANK).sr().read().dbeccerr() {
-                clear();
+            if FLASH.bank(bank).sr().read().dbeccerr() {
+                clear(bank);
                 return Err(FlashError::Ecc);
             }
+            offset += piece.len();
+            rest = behind;
         }
         Ok(())
     }
 
     fn capacity(&self) -> usize {
-        CAPACITY
+        self.capacity
     }
 }
 
@@ -171,20 +218,24 @@ fn masked(read: impl FnOnce()) {
     }
 }
 
-impl NorFlash for Bank2 {
+impl NorFlash for BoardFlash {
     const WRITE_SIZE: usize = WORD;
     const ERASE_SIZE: usize = SECTOR;
 
     fn erase(&mut self, from: u32, to: u32) -> Result<(), FlashError> {
         let length = to.checked_sub(from).ok_or(FlashError::OutOfBounds)? as usize;
-        let start = Self::within(from, length)?;
+        let start = Self::within(from, length, self.writable)?;
         if start % SECTOR != 0 || length % SECTOR != 0 {
             return Err(FlashError::Unaligned);
         }
-        self.unlocked(|| {
-            let first = start / SECTOR;
-            for sector in first..first + length / SECTOR {
-                let control = FLASH.bank(BANK).cr();
+        for offset in (start..start + length).step_by(SECTOR) {
+            let Place { bank, sector, .. } = place(offset);
+            // Nothing runs while the bank that everything runs from is erased.
+            if bank == PROGRAM_BANK {
+                watchdog::hold();
+            }
+            let result = self.unlocked(bank, || {
+                let control = FLASH.bank(bank).cr();
                 control.modify(|w| {
                     w.set_ser(true);
                     w.set_snb(sector as u8);
@@ -193,41 +244,47 @@ impl NorFlash for Bank2 {
                 });
                 control.modify(|w| w.set_start(true));
                 dsb();
-                let result = finished();
+                let result = finished(bank);
                 control.modify(|w| w.set_ser(false));
-                result?;
+                result
+            });
+            if bank == PROGRAM_BANK {
+                watchdog::release();
             }
-            Ok(())
-        })
+            result?;
+        }
+        Ok(())
     }
 
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), FlashError> {
-        let start = Self::within(offset, bytes.len())?;
+        let start = Self::within(offset, bytes.len(), self.writable)?;
         if start % WORD != 0 || bytes.len() % WORD != 0 {
             return Err(FlashError::Unaligned);
         }
-        self.unlocked(|| {
-            let mut at = BASE.wrapping_add(start);
-            for word in bytes.as_chunks::<WORD>().0 {
-                FLASH.bank(BANK).cr().modify(|w| {
-                    w.set_pg(true);
-                    w.set_psize(2);
-                });
-                isb();
-                dsb();
-                for part in word.as_chunks::<4>().0 {
-                    // SAFETY: inside bank 2 by `within`, aligned; PG is set, so the write goes to the buffer of one
-                    // flash word, which programs itself when the eighth part has come.
-                    unsafe { core::ptr::write_volatile(at as *mut u32, u32::from_le_bytes(*part)) };
-                    at = at.wrapping_add(4);
-                }
-                isb();
-                dsb();
-                let result = finished();
-                FLASH.bank(BANK).cr().modify(|w| w.set_pg(false));
-                result?;
-            }
-            Ok(())
-        })
+        for (word, offset) in bytes.as_chunks::<WORD>().0.iter().zip((start..).step_by(WORD)) {
+            let Place { bank, address, .. } = place(offset);
+            self.unlocked(bank, || program(bank, address, word))?;
+        }
+        Ok(())
     }
+}
+
+/// Programs one word, the control register open.
+fn program(bank: usize, address: usize, word: &[u8; WORD]) -> Result<(), FlashError> {
+    FLASH.bank(bank).cr().modify(|w| {
+        w.set_pg(true);
+        w.set_psize(2);
+    });
+    isb();
+    dsb();
+    for (part, at) in word.as_chunks::<4>().0.iter().zip((address..).step_by(4)) {
+        // SAFETY: inside the flash by `within`, aligned; PG is set, so the write goes to the buffer of one flash word,
+        // which programs itself when the eighth part has come.
+        unsafe { core::ptr::write_volatile(at as *mut u32, u32::from_le_bytes(*part)) };
+    }
+    isb();
+    dsb();
+    let result = finished(bank);
+    FLASH.bank(bank).cr().modify(|w| w.set_pg(false));
+    result
 }

@@ -15,6 +15,8 @@ use embassy_executor::{InterruptExecutor, SendSpawner};
 use embassy_stm32::interrupt::{self, InterruptExt, Priority};
 use embassy_stm32::{bind_interrupts, dma, peripherals, usart};
 
+use crate::stm32h743::priority;
+
 bind_interrupts!(pub struct Lines {
     USART6 => usart::InterruptHandler<peripherals::USART6>;
     USART3 => usart::BufferedInterruptHandler<peripherals::USART3>;
@@ -28,7 +30,18 @@ static SETPOINT_EXECUTOR: InterruptExecutor = InterruptExecutor::new();
 static CONFIG_EXECUTOR: InterruptExecutor = InterruptExecutor::new();
 
 /// Priority of everything that moves bytes of the setpoint link.
-pub const SETPOINT_LINK: Priority = Priority::P5;
+pub const SETPOINT_LINK: Priority = level(priority::SETPOINT_LINK);
+
+/// The four bits that count lie at the top.
+const fn level(number: u8) -> Priority {
+    match number {
+        5 => Priority::P5,
+        6 => Priority::P6,
+        9 => Priority::P9,
+        10 => Priority::P10,
+        _ => panic!("no such level here"),
+    }
+}
 
 #[embassy_stm32::interrupt]
 unsafe fn UART4() {
@@ -46,8 +59,8 @@ unsafe fn UART5() {
 pub fn start() -> [SendSpawner; 2] {
     interrupt::USART6.set_priority(SETPOINT_LINK);
     interrupt::SPI1.set_priority(SETPOINT_LINK);
-    interrupt::USART3.set_priority(Priority::P9);
-    interrupt::UART4.set_priority(Priority::P6);
-    interrupt::UART5.set_priority(Priority::P10);
+    interrupt::USART3.set_priority(const { level(priority::CONFIG_LINK) });
+    interrupt::UART4.set_priority(const { level(priority::SETPOINT_TASK) });
+    interrupt::UART5.set_priority(const { level(priority::CONFIG_TASK) });
     [SETPOINT_EXECUTOR.start(interrupt::UART4), CONFIG_EXECUTOR.start(interrupt::UART5)]
 }

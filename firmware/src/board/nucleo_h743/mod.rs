@@ -25,6 +25,7 @@ mod clocks;
 mod fatal;
 mod flash;
 mod interrupts;
+mod loader;
 mod memory;
 mod outputs;
 mod random;
@@ -34,5 +35,6 @@ mod start;
 mod tasks;
 mod watchdog;
 
-pub use flash::{Bank2, FlashError};
+pub use flash::{BoardFlash, FlashError};
+pub use loader::run as load;
 pub use start::{NAME, run};

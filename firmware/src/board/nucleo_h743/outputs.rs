@@ -5,6 +5,13 @@ use embassy_stm32::pac::{GPIOB, GPIOE};
 use embassy_stm32::{Peri, peripherals};
 
 use crate::board::outputs::Outputs;
+use crate::stm32h743::{DRIVE_ENABLE, FAULT};
+
+/// Drive enable and fault: on port E the outputs, on port B their lamps.
+const PINS: [[usize; 2]; 2] = [
+    [DRIVE_ENABLE[0].number as usize, FAULT[0].number as usize],
+    [DRIVE_ENABLE[1].number as usize, FAULT[1].number as usize],
+];
 
 /// Both, each with its lamp.
 pub type BoardOutputs = Outputs<Output<'static>, 2>;
@@ -22,12 +29,15 @@ pub fn low(
 
 /// Drive enable low, fault high, past every driver.
 pub fn drop_drives() {
-    GPIOE.bsrr().write(|w| {
-        w.set_br(11, true);
-        w.set_bs(9, true);
-    });
-    GPIOB.bsrr().write(|w| {
-        w.set_br(0, true);
-        w.set_bs(14, true);
-    });
+    const {
+        assert!(
+            DRIVE_ENABLE[0].port == 'E' && FAULT[0].port == 'E' && DRIVE_ENABLE[1].port == 'B' && FAULT[1].port == 'B'
+        );
+    }
+    for (port, [enable, fault]) in [GPIOE, GPIOB].into_iter().zip(PINS) {
+        port.bsrr().write(|w| {
+            w.set_br(enable, true);
+            w.set_bs(fault, true);
+        });
+    }
 }

@@ -28,11 +28,12 @@ use super::watchdog;
 use crate::board::config_link::Tick;
 use crate::board::shared_servo::SetpointSide;
 use crate::servo::ServoAccess;
+use crate::stm32h743::{SPI_PATIENCE_US, SPI_SELECT};
 
 /// Time in which the last bytes of a transfer pass from the SPI to memory.
 const SETTLING: Duration = Duration::from_micros(5);
 /// An answer waits no longer than this, whatever the deadline: the watchdog has to be fed.
-const PATIENCE: Duration = Duration::from_millis(10);
+const PATIENCE: Duration = Duration::from_micros(SPI_PATIENCE_US as u64);
 
 /// The task.
 #[embassy_executor::task]
@@ -100,7 +101,8 @@ async fn whole<E>(
 }
 
 /// Line of the edge detector, the number of the pin.
-const LINE: usize = 4;
+const LINE: usize = SPI_SELECT.number as usize;
+const _: () = assert!(LINE == 4 && SPI_SELECT.port == 'A', "the handler below is that of line 4");
 
 /// Signalled at each edge.
 static DESELECTED: Signal<CriticalSectionRawMutex, ()> = Signal::new();

@@ -19,8 +19,6 @@ use crate::board::config_link::Tick;
 use crate::board::shared_servo::SetpointSide;
 use crate::servo::ServoAccess;
 
-/// Bytes per second of the link.
-pub const BAUD: u32 = 3_000_000;
 /// Most answers to what was read at once: the shortest frame takes 34 bytes of the 96.
 const ANSWERS: usize = 3 * (MAX_ANSWER_BYTES + 2);
 

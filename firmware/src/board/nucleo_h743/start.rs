@@ -3,7 +3,7 @@
 use embassy_executor::SpawnToken;
 use embassy_stm32::gpio::{Input, Level, Output, Pull, Speed};
 use embassy_stm32::pac::gpio::vals::Ospeedr;
-use embassy_stm32::pac::{GPIOA, RCC};
+use embassy_stm32::pac::{FLASH, GPIOA, RCC};
 use embassy_stm32::spi::{self, SlaveSelectPolarity, Spi};
 use embassy_stm32::uid::uid;
 use embassy_stm32::usart::{self, BufferedUart, Uart};
@@ -11,16 +11,17 @@ use static_cell::StaticCell;
 use truepath_core::image::DeviceClass;
 use truepath_core::link::ResetCause;
 
-use super::flash::Bank2;
+use super::flash::BoardFlash;
 use super::interrupts::{self, Lines, SETPOINT_LINK};
 use super::setpoint_spi::setpoint_spi;
-use super::setpoint_uart::{self, setpoint_uart};
-use super::tasks::{CONFIG_BAUD, SETPOINT_TICK, background, config_task, tick};
+use super::setpoint_uart::setpoint_uart;
+use super::tasks::{SETPOINT_TICK, background, config_task, tick};
 use super::{clocks, memory, outputs, random, watchdog};
 use crate::board::config_link::{Configuration, SharedConfiguration};
 use crate::board::shared_servo::share;
 use crate::config_service::{Board, ConfigService};
 use crate::servo::Servo;
+use crate::stm32h743::{BOR_LEVEL, CONFIG_BAUD, CORE_HZ, SETPOINT_BAUD};
 
 /// The board's name in `Hello`.
 pub const NAME: &str = "nucleo-h743zi2";
@@ -34,12 +35,13 @@ pub fn run() -> ! {
 ///
 /// Not inlined: its frame holds the whole device several times, and the on-board correction is not to stand upon it.
 #[inline(never)]
-fn set_up() -> &'static SharedConfiguration<Bank2> {
+fn set_up() -> &'static SharedConfiguration<BoardFlash> {
     static SERVO: StaticCell<Servo<'static>> = StaticCell::new();
-    static CONFIGURATION: StaticCell<SharedConfiguration<Bank2>> = StaticCell::new();
+    static CONFIGURATION: StaticCell<SharedConfiguration<BoardFlash>> = StaticCell::new();
 
     if let Some(mut core) = cortex_m::Peripherals::take() {
         core.SCB.enable_icache();
+        clocks::count_cycles(&mut core);
     }
     let last_reset = reset_cause();
     let mut config = clocks::config();
@@ -48,6 +50,14 @@ fn set_up() -> &'static SharedConfiguration<Bank2> {
     // The drives first: they stay off until the controller has acknowledged them.
     let outputs = outputs::low((p.PE11, p.PB0), (p.PE9, p.PB14));
     defmt::info!("truepath {=str}, board {=str}, reset cause {=u8}", env!("CARGO_PKG_VERSION"), NAME, last_reset as u8);
+    let level = FLASH.optsr_cur().read().bor_lev();
+    if level != BOR_LEVEL {
+        defmt::warn!(
+            "brown-out level {=u8} in the option bytes, wanted {=u8}: a sagging supply may tear a word",
+            level,
+            BOR_LEVEL
+        );
+    }
     // SAFETY: nothing in these regions is used before.
     unsafe { memory::wake() };
 
@@ -61,8 +71,9 @@ fn set_up() -> &'static SharedConfiguration<Bank2> {
         present: button.is_high(),
         id: uid(),
         secret: random::draw(),
+        counter_hz: CORE_HZ,
     };
-    let (service, servo) = ConfigService::start(Bank2::new(p.FLASH), memory::lend(), board, 0);
+    let (service, servo) = ConfigService::start(BoardFlash::new(p.FLASH), memory::lend(), board, 0);
     // SAFETY: the first side goes to the setpoint task, the second below it; above it run only interrupts that leave the
     // servo alone.
     let (side, servo) = unsafe { share(SERVO.init(servo)) };
@@ -73,7 +84,7 @@ fn set_up() -> &'static SharedConfiguration<Bank2> {
     cortex_m::asm::delay(48_000);
     if strap.is_high() {
         let mut config = usart::Config::default();
-        config.baudrate = setpoint_uart::BAUD;
+        config.baudrate = SETPOINT_BAUD;
         let uart = must(Uart::new(p.USART6, p.PG9, p.PG14, p.DMA1_CH1, p.DMA1_CH0, Lines, config));
         let (sender, receiver) = uart.split();
         let receiver = receiver.into_ring_buffered(memory::setpoint_ring());

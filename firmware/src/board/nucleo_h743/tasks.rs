@@ -4,13 +4,10 @@ use embassy_stm32::usart::{BufferedUartRx, BufferedUartTx};
 use embassy_time::{Duration, Ticker};
 
 use super::clocks::BoardClock;
-use super::flash::Bank2;
+use super::flash::BoardFlash;
 use super::{fatal, memory, watchdog};
 use crate::board::config_link::{BoardControl, SharedConfiguration, Tick, compute, serve};
 use crate::config_service::Restart;
-
-/// Bits per second of the configuration link.
-pub const CONFIG_BAUD: u32 = 921_600;
 
 /// Wakes the setpoint task each millisecond.
 pub static SETPOINT_TICK: Tick = Tick::new();
@@ -30,7 +27,7 @@ impl BoardControl for BoardClock {
 pub async fn config_task(
     receiver: BufferedUartRx<'static>,
     sender: BufferedUartTx<'static>,
-    configuration: &'static SharedConfiguration<Bank2>,
+    configuration: &'static SharedConfiguration<BoardFlash>,
 ) {
     serve(receiver, sender, &CONFIG_TICK, configuration, BoardClock).await
 }
@@ -47,7 +44,7 @@ pub async fn tick() {
 }
 
 /// The on-board correction. Never returns: the processor sleeps until the next interrupt when nothing is to be done.
-pub fn background(configuration: &'static SharedConfiguration<Bank2>) -> ! {
+pub fn background(configuration: &'static SharedConfiguration<BoardFlash>) -> ! {
     let mut workspace = memory::correction_buffers().workspace();
     loop {
         if !compute(configuration, &mut workspace) {

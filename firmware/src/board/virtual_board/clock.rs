@@ -89,6 +89,9 @@ pub fn now_us() -> u64 {
     if batches_have_it() { BATCH_US.load(Ordering::Relaxed) } else { hardware_us() }
 }
 
+/// The counter of the links is their time.
+pub const COUNTER_HZ: u32 = 1_000_000;
+
 /// Whether the time is that of batches. From the first one on it is, until the next reset: it begins at 0 and stands
 /// still but for the time records, between batches as well, so that a run does not depend on the machine it runs on.
 pub fn batches_have_it() -> bool {

@@ -3,6 +3,9 @@
 //! Setpoint link on UART 0, configuration link on UART 1, defmt log on UART 3, both links in bulk through the shared
 //! memory at 0x6000_0000; flash is a model in RAM that outlives resets. Memory map: `memory.x` in the root.
 //!
+//! The program starts by itself, where the emulator loads it anew at each reset; or it is started by the loader, and can be
+//! replaced over the link.
+//!
 //! | who | runs | deadline | what a miss does |
 //! |---|---|---|---|
 //! | setpoint task | executor of priority 1, by bytes and by the tick of 1 ms | `deadline_us` | the answer is withheld and counted |
@@ -15,6 +18,7 @@ pub mod fatal;
 mod gpio;
 mod interrupts;
 mod line;
+mod loader;
 mod log;
 mod memory;
 mod retained;
@@ -24,4 +28,5 @@ mod tasks;
 pub mod uart;
 mod watchdog;
 
+pub use loader::run as load;
 pub use start::{NAME, run};

@@ -8,6 +8,7 @@ use truepath_core::link::ResetCause;
 const SOFTWARE: u32 = 0x5253_5401;
 const WATCHDOG: u32 = 0x5253_5402;
 const RUNNING: u32 = 0x5253_5403;
+const LOADER: u32 = 0x5253_5404;
 
 unsafe extern "C" {
     static mut _retained_start: [u32; 2];
@@ -23,18 +24,32 @@ fn store(cause: u32) {
     unsafe { word(0).write_volatile(cause) };
 }
 
-/// Why the last reset happened; from here on a reset that nobody announces is one by the pin (`system_reset` of the
-/// emulator's monitor).
-pub fn take_cause() -> ResetCause {
+/// Why the last reset happened.
+pub fn cause() -> ResetCause {
     // SAFETY: as in `store`.
-    let cause = match unsafe { word(0).read_volatile() } {
+    match unsafe { word(0).read_volatile() } {
         SOFTWARE => ResetCause::Software,
         WATCHDOG => ResetCause::Watchdog,
         RUNNING => ResetCause::Pin,
         _ => ResetCause::PowerOn,
-    };
+    }
+}
+/// The same; from here on a reset that nobody announces is one by the pin (`system_reset` of the emulator's monitor).
+pub fn take_cause() -> ResetCause {
+    let cause = cause();
     store(RUNNING);
     cause
+}
+
+/// The loader starts the program.
+pub fn announce_loader() {
+    // SAFETY: as in `store`.
+    unsafe { word(1).write_volatile(LOADER) };
+}
+/// Whether a loader started the program.
+pub fn has_loader() -> bool {
+    // SAFETY: as in `store`.
+    unsafe { word(1).read_volatile() == LOADER }
 }
 
 /// Announces a reset by software.

@@ -42,12 +42,23 @@ fn set_up() -> &'static SharedConfiguration<Nor<'static>> {
     let last_reset = retained::take_cause();
     defmt::info!("truepath {=str}, board {=str}, reset cause {=u8}", env!("CARGO_PKG_VERSION"), NAME, last_reset as u8);
     let Some(mut core) = cortex_m::Peripherals::take() else { unreachable!("taken here and nowhere else") };
+    // Without a loader the vectors are elsewhere: those at 0 only lead to the entry.
+    // SAFETY: the table of this image, aligned by the link script.
+    unsafe { core.SCB.vtor.write(memory::vectors()) };
     interrupts::set_up(&mut core.NVIC);
 
     // The clock of the device begins here, at 0, in batches as well.
-    let board =
-        Board { name: NAME, last_reset, class: DeviceClass::Bench, present: presence(), id: [0; 12], secret: None };
-    let (service, servo) = ConfigService::start(memory::bank(last_reset), memory::lend(), board, 0);
+    let board = Board {
+        name: NAME,
+        last_reset,
+        class: DeviceClass::Bench,
+        present: presence(),
+        id: [0; 12],
+        secret: None,
+        counter_hz: clock::COUNTER_HZ,
+    };
+    let flash = memory::flash(last_reset, retained::has_loader());
+    let (service, servo) = ConfigService::start(flash, memory::lend(), board, 0);
     // SAFETY: the first side goes to the setpoint task, the second below it; above it run only interrupts that leave the
     // servo alone.
     let (side, servo) = unsafe { share(SERVO.init(servo)) };

@@ -38,12 +38,23 @@ fn registers() -> &'static Registers {
     unsafe { &*(0x4000_8000 as *const Registers) }
 }
 
+/// The same for a program on trial, which may not get as far as to start it itself, ms.
+const HALF_TRIAL_MS: u32 = 3_000;
+
 /// Starts it.
 pub fn start() {
+    start_with(HALF_MS);
+}
+/// Starts it for a program on trial.
+pub fn start_trial() {
+    start_with(HALF_TRIAL_MS);
+}
+
+fn start_with(half_ms: u32) {
     // SAFETY: plain configuration.
     unsafe {
         registers().lock.write(UNLOCK);
-        registers().load.write(HZ / 1_000 * HALF_MS);
+        registers().load.write(HZ / 1_000 * half_ms);
         registers().control.write(INTERRUPT | RESET);
     }
 }

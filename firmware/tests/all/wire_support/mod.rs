@@ -4,8 +4,12 @@
 #[allow(dead_code)]
 #[path = "../../../../core/wire/tests/all/rewrite_support/mod.rs"]
 pub mod part;
+pub mod update;
+
+use std::cell::RefCell;
 
 use ed25519_dalek::{Signer, SigningKey};
+use embedded_storage::nor_flash::ReadNorFlash;
 use part::{CLEAR, GATE, MM, PASS, SPINDLE};
 use truepath_core::image::{
     DeviceClass, DeviceClasses, Image, PublicKey, Role, build, image_bytes, sign, signed_bytes,
@@ -18,7 +22,8 @@ use truepath_core::rewrite::{ArmRequest, Flags, Frame, Mode, Output, Setpoint};
 use truepath_fw::computation::ProgressMeter;
 use truepath_fw::config_service::{Board, IMAGE_BYTES, Memory, Restart};
 use truepath_fw::device::Device;
-use truepath_fw::flash::{BANK_BYTES, BANK_WORDS, Cut, Nor, WordState};
+use truepath_fw::flash::{BANK_BYTES, Cut, FLASH_BYTES, Nor, WORD_BYTES, WordState};
+use truepath_fw::loader::prepare;
 
 pub type Bank = Nor<'static>;
 
@@ -91,10 +96,18 @@ impl Rig {
         rig.device = Some(Device::start(flash, memory, Board { present: false, ..board }, rig.now_us));
         rig
     }
+    /// The same with a loader, which starts it at each reset.
+    pub fn with_loader() -> Self {
+        let mut rig = Self::of_flash(FLASH_BYTES);
+        rig.done(Ask::Configure(DeviceSettings::at_1_khz())).unwrap();
+        rig
+    }
     /// A device as it leaves the factory.
     pub fn from_factory() -> Self {
-        let bank = lent(0xFF, BANK_BYTES).try_into().unwrap();
-        let words = lent(WordState::Blank, BANK_WORDS).try_into().unwrap();
+        Self::of_flash(BANK_BYTES)
+    }
+    fn of_flash(bytes: usize) -> Self {
+        let (bank, words) = (lent(0xFF, bytes), lent(WordState::Blank, bytes / WORD_BYTES));
         let memory = Memory {
             image: lent(0, IMAGE_BYTES),
             recording: lent(0, 48 * RECORDED),
@@ -110,6 +123,7 @@ impl Rig {
             present: true,
             id: [3; 12],
             secret: None,
+            counter_hz: 1_000_000,
         };
         let device = Device::start(Nor::erased(bank, words), memory, board, 0);
         let setpoint = Setpoint {
@@ -298,7 +312,8 @@ impl Rig {
     pub fn wait(&mut self, ms: u64) {
         self.now_us += ms * 1_000;
         let now_us = self.now_us;
-        self.device().watch(now_us);
+        let restart = self.device().watch(now_us);
+        self.restart = self.restart.or(restart);
     }
 
     /// Out of `Off`, drives enabled.
@@ -352,7 +367,36 @@ impl Rig {
         self.session = None;
         let (mut flash, memory, board) = self.device.take().unwrap().into_parts();
         flash.power_up();
+        if flash.capacity() == FLASH_BYTES {
+            let shared = RefCell::new(flash);
+            prepare(&shared).unwrap();
+            flash = shared.into_inner();
+        }
         self.device = Some(Device::start(flash, memory, Board { last_reset: cause, ..board }, now_us));
+    }
+    /// What the flash holds.
+    pub fn contents(&mut self) -> (Vec<u8>, Vec<WordState>) {
+        let mut kept = (vec![], vec![]);
+        self.with_memory(|bytes, words| kept = (bytes.to_vec(), words.to_vec()));
+        kept
+    }
+    /// A device that holds it again.
+    pub fn restore(&mut self, (bytes, words): &(Vec<u8>, Vec<WordState>)) {
+        self.with_memory(|to, marks| {
+            to.copy_from_slice(bytes);
+            marks.copy_from_slice(words);
+        });
+    }
+    fn with_memory(&mut self, f: impl FnOnce(&mut [u8], &mut [WordState])) {
+        let (flash, memory, board) = self.device.take().unwrap().into_parts();
+        let (bytes, words) = flash.into_memory();
+        f(bytes, words);
+        self.session = None;
+        self.device = Some(Device::start(Nor::new(bytes, words), memory, board, self.now_us));
+    }
+    /// The program that came as an update.
+    pub fn running(&mut self) -> Option<truepath_core::link::Firmware> {
+        update::status(self).running
     }
     /// A device with the settings for 1 kHz and nothing else, in the same memory.
     pub fn wipe(&mut self) {

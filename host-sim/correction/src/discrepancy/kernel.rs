@@ -15,6 +15,7 @@
 //! because a machine may yield otherwise along another axis.
 
 use truepath_core::cut::Path;
+use truepath_ground::hypotenuse::hypot;
 use truepath_ground::units::mm;
 
 use super::feature::Feature;
@@ -60,7 +61,7 @@ const DRIFTS_OVER: f64 = 1.0 / 3.0;
 /// Standard deviation from one part to the next of a wall that yields so much, mm, where force and cutter change as little as any
 /// kernel allows.
 pub fn least_change(deflection_mm: f64) -> f64 {
-    (deflection_mm * Kernel::EVEN.wear.hypot(BLANK)).hypot(SIZE)
+    hypot(deflection_mm * hypot(Kernel::EVEN.wear, BLANK), SIZE)
 }
 
 /// The contours of a part, as far as the kernel must know them.

@@ -3,7 +3,8 @@
 use truepath_core::correct::Node;
 use truepath_core::cut::Path;
 use truepath_core::units::Offset;
-use truepath_ground::length::Unit;
+use truepath_ground::hypotenuse::hypot;
+use truepath_ground::length::{Remark, Unit};
 use truepath_ground::units::mm;
 
 use super::holdout::Residuals;
@@ -42,7 +43,7 @@ pub struct Verdict {
     pub used_again: Option<UsedAgain>,
     /// Why, and other remarks on the part.
     #[serde(skip)]
-    remarks: Vec<String>,
+    remarks: Vec<Remark>,
 }
 
 /// What a part was cut with and the next one is cut with again.
@@ -107,7 +108,7 @@ impl Promise {
         for place in &monitor.places {
             let at = path.index_at(place.s).saturating_sub(path.first());
             let Some((predicted, sigma)) = promised.get(at) else { continue };
-            let sigma = mm(*sigma).hypot(mm(place.noise));
+            let sigma = hypot(mm(*sigma), mm(place.noise));
             promise.max_mm = promise.max_mm.max(mm(predicted.abs()));
             promise.max_sigma_mm = promise.max_sigma_mm.max(sigma);
             promise.within_two_sigma += usize::from((mm(place.error) - mm(*predicted)).abs() <= 2.0 * sigma);
@@ -126,35 +127,45 @@ impl Verdict {
         (fits, unit): (bool, Unit),
     ) -> Self {
         let (now, before) = (monitor.now, monitor.before);
-        let [now_rms, before_rms] = [now.rms_mm, before.rms_mm].map(|rms| unit.of(rms));
-        let name = unit.name();
+        let worse = |unit: Unit| {
+            let [now_rms, before_rms] = [now.rms_mm, before.rms_mm].map(|rms| unit.of(rms));
+            format!("({now_rms:.4} {name} after {before_rms:.4} {name}, rms at its places)", name = unit.name())
+        };
         let mut remarks = Vec::new();
         let rolled_back = again.is_some_and(|again| again + 1 < parts.len());
         let used_again = again.and_then(|again| parts.get(again)).map(UsedAgain::of);
         if let Some(used) = used_again {
-            let why = if fits {
+            remarks.push(unit.remark(|unit| {
+                let why = if fits {
+                    format!(
+                        "it came out worse {} and the updated model does not foretell the places it was not shown",
+                        worse(unit)
+                    )
+                } else {
+                    "most points contradict those of the parts before".to_owned()
+                };
                 format!(
-                    "it came out worse ({now_rms:.4} {name} after {before_rms:.4} {name}, rms at its places) and the updated model does not foretell the places it was not shown"
+                    "part {} is set aside and {}: {why}; look at clamping, datum, cutter and probe before the next part",
+                    now.part,
+                    used.words()
                 )
-            } else {
-                "most points contradict those of the parts before".to_owned()
-            };
-            remarks.push(format!(
-                "part {} is set aside and {}: {why}; look at clamping, datum, cutter and probe before the next part",
-                now.part,
-                used.words()
-            ));
+            }));
         } else if monitor.is_worse() {
-            remarks.push(format!(
-                "part {} came out worse than part {} ({now_rms:.4} {name} after {before_rms:.4} {name}, rms at its places), and the updated model foretells the places it was not shown: the next correction is a new one",
-                now.part, before.part
-            ));
+            remarks.push(unit.remark(|unit| {
+                format!(
+                    "part {} came out worse than part {} {}, and the updated model foretells the places it was not shown: the next correction is a new one",
+                    now.part,
+                    before.part,
+                    worse(unit)
+                )
+            }));
         }
         if promise.within_two_sigma * 4 < promise.places * 3 {
-            remarks.push(format!(
+            let said = format!(
                 "only {} of {} places of part {} came out within two standard deviations of what was promised",
                 promise.within_two_sigma, promise.places, now.part
-            ));
+            );
+            remarks.push(said.into());
         }
         let earlier_parts = monitor.parts.split_last().map(|(_, earlier)| earlier.to_vec()).unwrap_or_default();
         Self {
@@ -181,18 +192,19 @@ impl Verdict {
         let (now, before) = (self.part, self.previous_error_mm.part);
         let more = if self.force_change > 0.0 { "more" } else { "less" };
         let percent = 100.0 * self.force_change.abs();
-        self.remarks.push(format!(
+        let said = format!(
             "part {now} was cut with {percent:.0} % {more} force than part {before}: another lot of the material, a worn cutter or a new one; the next correction is for parts like it"
-        ));
+        );
+        self.remarks.push(said.into());
     }
 
     /// Adds a remark.
-    pub(super) fn say(&mut self, remark: Option<String>) {
+    pub(super) fn say(&mut self, remark: Option<Remark>) {
         self.remarks.extend(remark);
     }
 
     /// What the user should know of the part, a sentence each.
-    pub fn remarks(&self) -> &[String] {
+    pub fn remarks(&self) -> &[Remark] {
         &self.remarks
     }
 }

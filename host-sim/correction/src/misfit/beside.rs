@@ -56,7 +56,8 @@ fn is_stock(misfit: &Misfit, pass: &Pass, measurement: &Measurement, law: WallLa
     misfit.causes.iter().all(|cause| cost < cause.cost() + 2.0 * CLEARLY)
 }
 
-/// Whether nothing forbids to go on with the points relieved of what is beside the model.
+/// Whether nothing forbids to go on with the points relieved of what is beside the model: they fit then, all of them, since a
+/// discrepancy that leaves them off is no explanation of theirs.
 fn is_allowed(pass: &Pass, measurement: &Measurement, core: &job::Identified, measured: &[Observation]) -> bool {
     let mut buffer = PathBuffer::default();
     let Ok(path) = pass.sample(&mut buffer) else { return false };
@@ -67,5 +68,6 @@ fn is_allowed(pass: &Pass, measurement: &Measurement, core: &job::Identified, me
     for (o, beside) in points.iter_mut().zip(&relieved.at_points) {
         o.error -= nm(*beside);
     }
-    Look::of(pass, measurement, &relieved.found.core, &points).reason().is_none()
+    let look = Look::of(pass, measurement, &relieved.found.core, &points);
+    look.reason().is_none() && look.fits_well()
 }

@@ -94,6 +94,11 @@ impl Look {
             || self.farthest.1 > 0.6 * FARTHEST
     }
 
+    /// Whether the points fit on the whole, those that do not among them.
+    pub fn fits_well(&self) -> bool {
+        self.score.cost <= WELL * self.score.points as f64
+    }
+
     /// What forbids to go on whatever the cause is.
     pub fn reason(&self) -> Option<Reason> {
         let (unfit, all) = self.count();

@@ -2,6 +2,7 @@
 
 use truepath_core::cut::WallLaw;
 use truepath_core::units::Offset;
+use truepath_ground::length::Remark;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
@@ -12,7 +13,7 @@ use crate::identification::asked;
 
 /// A datum or a size that explains the points by far better, both where the machine deflects as the job says and where a
 /// correction has cancelled that; `None` where there is none.
-pub fn noticed(pass: &Pass, measurement: &Measurement) -> Option<String> {
+pub fn noticed(pass: &Pass, measurement: &Measurement) -> Option<Remark> {
     // A width sees no shift of the datum.
     if measurement.dimensions.is_some() {
         return None;
@@ -31,5 +32,6 @@ pub fn noticed(pass: &Pass, measurement: &Measurement) -> Option<String> {
     let which = if moved.is_wrong() { moved } else { Rigid::of(&deflected.observations).filter(Rigid::is_wrong)? };
     // A part that a correction has cut shows the shift by itself.
     let best = if corrected.cost[2] < left { corrected } else { which };
-    Some(format!("the points do not fit the job: {}; {}", best.words(pass.unit()), best.help()))
+    let said = |unit| format!("the points do not fit the job: {}; {}", best.words(unit), best.help());
+    Some(pass.unit().remark(said))
 }

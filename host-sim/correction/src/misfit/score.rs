@@ -4,6 +4,7 @@
 //! like noisy ones. Here the stated noise counts, with what an honest wall adds to it.
 
 use truepath_core::identify::{COUNT, Observation, Parameter};
+use truepath_ground::hypotenuse::hypot;
 use truepath_ground::rows::ascending;
 use truepath_ground::units::mm;
 
@@ -21,7 +22,7 @@ pub const LOST: f64 = HUBER * (2.0 * FAR - HUBER);
 
 /// Standard deviation that is expected of measured − predicted, mm.
 pub fn expected_mm(o: &Observation) -> f64 {
-    mm(o.noise).hypot(ROUGH_MM).hypot(MODEL_SHARE * mm(o.error))
+    hypot(hypot(mm(o.noise), ROUGH_MM), MODEL_SHARE * mm(o.error))
 }
 
 /// Measured − predicted, mm.

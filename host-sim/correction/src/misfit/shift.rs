@@ -5,6 +5,7 @@
 //! products a point, where a fit cuts the contour some hundred times.
 
 use truepath_core::identify::{COUNT, Fit, Observation, Parameter, Prior};
+use truepath_ground::hypotenuse::hypot;
 use truepath_ground::units::{float, mm};
 
 use super::fit::pull;
@@ -86,7 +87,7 @@ impl Shift {
 
     /// How far, mm.
     pub fn length_mm(&self) -> f64 {
-        self.datum_mm[0].hypot(self.datum_mm[1])
+        hypot(self.datum_mm[0], self.datum_mm[1])
     }
 }
 

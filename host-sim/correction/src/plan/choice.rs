@@ -9,7 +9,7 @@ use truepath_core::job::{self, Identified};
 use truepath_core::process::ImmersionGrid;
 use truepath_core::units::{Offset, Real};
 use truepath_ground::diagnostics::Failure;
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Remark, Unit};
 use truepath_ground::units::{float, mm};
 use truepath_job::job::{PlanCutter, PlanTable};
 use truepath_job::measurement::Measurement;
@@ -199,6 +199,11 @@ impl<'a> Planner<'a> {
         self.pass.job.numbers.tool.diameter
     }
 
+    /// The unit of the program.
+    pub fn unit(&self) -> Unit {
+        self.pass.unit()
+    }
+
     /// Another cutter that is at hand, by its number.
     pub fn cutter(&self, number: u32) -> Option<&PlanCutter> {
         self.others.iter().filter_map(Mounted::cutter).find(|cutter| cutter.number == number)
@@ -337,28 +342,32 @@ impl<'a> Planner<'a> {
 
     /// The limits of the job that the program stands, and what is left out: passes can only be added where its leads let them, and run the other way where
     /// these can be turned round, and feeds changed where the F words of the program are those of the cut. What cannot is said.
-    pub fn possible(&self, mut limits: PlanTable) -> (PlanTable, Vec<String>) {
-        let mut said = self.left_out.clone();
+    pub fn possible(&self, mut limits: PlanTable) -> (PlanTable, Vec<Remark>) {
+        let mut said: Vec<Remark> = self.left_out.iter().map(|why| why.as_str().into()).collect();
         said.extend(self.unsettled.map(|by| {
-            format!(
-                "machine and material do not settle: at a probed place what the model of several passes says still changes by {:.3} mm, so that the plan is less sure than it says; touch the part at more heights, or plan for a part that is roughed closer to the wall",
-                mm(by)
-            )
+            self.pass.unit().remark(|unit| {
+                format!(
+                    "machine and material do not settle: at a probed place what the model of several passes says still changes by {:.3} {}, so that the plan is less sure than it says; touch the part at more heights, or plan for a part that is roughed closer to the wall",
+                    unit.of(mm(by)),
+                    unit.name()
+                )
+            })
         }));
         if let Err(failure) = planned::can_repeat_pass(self.pass) {
             (limits.max_cuts, limits.max_levels) = (1, 1);
-            said.push(format!("no pass can be added to this program, so that one is all that is planned: {failure}"));
+            let why = format!("no pass can be added to this program, so that one is all that is planned: {failure}");
+            said.push(why.into());
         } else if limits.reverse
             && let Err(failure) = planned::can_reverse(self.pass)
         {
             limits.reverse = false;
-            said.push(format!("no pass of this program can run the other way: {failure}"));
+            said.push(format!("no pass of this program can run the other way: {failure}").into());
         }
         if let Err(failure) = written_feeds_count(self.pass, "a plan changes F words", "plan with the feed as it is") {
             limits.percent = [100, 100];
-            said.push(format!(
-                "every pass is planned at the feed of the cut, because no other can be written: {failure}"
-            ));
+            let why =
+                format!("every pass is planned at the feed of the cut, because no other can be written: {failure}");
+            said.push(why.into());
         }
         (limits, said)
     }

@@ -24,6 +24,7 @@ use truepath_core::job;
 use truepath_core::process::{ImmersionGrid, Mill, Slices};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::cholesky::Cholesky;
+use truepath_ground::hypotenuse::hypot;
 use truepath_ground::units::{float, mm, nm, real};
 
 use super::bench::{Bench, CutPass};
@@ -299,7 +300,7 @@ fn rows(
                 is_planned: cut.is_planned,
                 place: engagements[cut.wall].place(point.s, float(point.height)),
                 unexplained: mm(point.error) - base + linear,
-                deviation: mm(point.noise).hypot(MODEL_SHARE * missed),
+                deviation: hypot(mm(point.noise), MODEL_SHARE * missed),
                 sensitivity,
             });
             kept.push((of, at));
@@ -392,7 +393,7 @@ impl<'r> Task<'r> {
                 let (residual, deviation) = ((inverse / precision).abs(), spread * row.deviation);
                 // Beside its own variance the others leave so much open.
                 let open = (1.0 / precision - deviation * deviation / *weight).max(0.0);
-                let expected = open.sqrt().hypot(deviation);
+                let expected = hypot(open.sqrt(), deviation);
                 *weight = if residual <= OUTLYING * expected {
                     1.0
                 } else {

@@ -69,11 +69,13 @@ impl<'a> Mounted<'a> {
     pub fn other(pass: &Pass, known: &Identification, cutter: PlanCutter) -> Result<Self, String> {
         let mut pass = pass.clone();
         let radius = Offset::from_nm(cutter.diameter.nm() / 2);
+        let unit = pass.unit();
         let setup = &mut pass.core.setup;
         let wider = radius - Offset::from_nm(pass.job.numbers.tool.diameter.nm() / 2);
         if wider != Offset::ZERO {
             pass.blocks = beside(&pass.blocks, setup.wall, wider).map_err(|why| {
-                format!("T{} (diameter {} mm) is left out: {why}", cutter.number, mm(cutter.diameter))
+                let left = format!("T{} (diameter {} mm) is left out: {why}", cutter.number, mm(cutter.diameter));
+                unit.retold(&left).into_owned()
             })?;
         }
         if setup.allowance >= radius + radius {

@@ -69,6 +69,7 @@ pub fn write(
         };
         return Err(K007
             .error(found, "a choice of the cutter of the program, or of one as wide by the program route")
+            .told_in(one.planner.unit())
             .into());
     }
     let mut samples: Vec<Vec<Sample>> = chosen.iter().map(|_| Vec::new()).collect();

@@ -22,6 +22,7 @@ use truepath_core::cut::Path;
 use truepath_core::gcode::{LineRange, program_crc};
 use truepath_core::units::Offset;
 use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::units::mm;
 use truepath_job::job::PlanCutter;
 use truepath_job::levels;
 use truepath_job::pass::{Pass, PathBuffer};
@@ -295,9 +296,9 @@ impl Planned {
         let pass = self.passes.first().ok_or_else(|| Failure::Internal("no wall to be planned".to_owned()))?;
         let mut notes = report::notes(walls);
         if self.repeated.depths.iter().any(|depth| depth.centre_path) {
-            let radius = pass.core.setup.radius.nm() as f64 / 1e6;
+            let (radius, name) = (pass.unit().of(mm(pass.core.setup.radius)), pass.unit().name());
             notes.push(format!(
-                "path of the cutter centre: the cutter radius of {radius} mm is part of it, D is not used"
+                "path of the cutter centre: the cutter radius of {radius} {name} is part of it, D is not used"
             ));
         }
         let job = &pass.job;

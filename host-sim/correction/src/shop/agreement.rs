@@ -55,8 +55,8 @@ pub(crate) fn after(pass: &Pass, agreement: Option<Agreement>) -> Pass {
         contradicted => {
             let mut pass = as_stated(pass);
             pass.warnings.push(contradicted.map_or_else(
-                || "what other jobs of the shop say was not used: it cannot be compared with these points".to_owned(),
-                |agreement| agreement.words(),
+                || "what other jobs of the shop say was not used: it cannot be compared with these points".into(),
+                |agreement| agreement.words().into(),
             ));
             pass
         }

@@ -1,11 +1,11 @@
 //! The wall of one pass, as the identified machine cuts it, with what is not known of it.
 //!
-//! Limits: what the points leave open is linearised about the identified machine; of a long contour five hundred places are drawn, the
-//! worst of as many stretches. The ends of an open contour and sharp inside corners are not judged (see [`judged`]).
+//! Limits: what the points leave open is linearised about the identified machine; two hundred places are drawn, of a long contour
+//! five hundred, the worst of as many stretches. The ends of an open contour and sharp inside corners are not judged (see [`judged`]).
 
 use rayon::prelude::*;
 use truepath_core::correct::{Band, HEIGHTS, Node, commanded};
-use truepath_core::cut::{ForceTable, Loop, State};
+use truepath_core::cut::{ForceTable, Loop, Path, State, WallError};
 use truepath_core::identify::{Fit, Parameter, Parameters, Prior, neighbours, prior_weights};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::rows::largest;
@@ -17,10 +17,13 @@ use super::unmodelled::{SOFTER, lack, unbent, unmodelled};
 use super::wall::{WallFigures, judged};
 use crate::correction::Identification;
 use crate::discrepancy::Along;
-use crate::parallel_walls::{run, walls_at, walls_near};
+use crate::parallel_walls::{CutWalls, run, walls_at};
 
-/// Places whose walls are drawn, at most.
-const DRAWN_PLACES: usize = 500;
+/// Places whose walls are drawn: as many, as long as they are no farther apart than a part of the radius, and at most.
+const DRAWN_PLACES: usize = 200;
+const MOST_DRAWN_PLACES: usize = 500;
+/// Within such a part of the radius a wall hardly changes.
+const ALIKE: i64 = 4;
 /// Heights of a place.
 pub const COUNT: usize = HEIGHTS as usize;
 
@@ -33,8 +36,9 @@ impl Surface {
         let indices: Vec<usize> = places.iter().map(|(index, _)| *index).collect();
         let found = &known.fit().parameters;
         let known_states = states(machine, nodes);
-        let mut all = in_mm(walls_at(machine, &known_states, heights(), &indices));
-        let load = Load::of(machine, &known_states, &all, &indices, found);
+        let walls = walls_at(machine, &known_states, heights(), &indices);
+        let mut all = in_mm(&walls);
+        let load = Load::of(machine, nodes, &all, &indices, found);
         for ((column, per_load), index) in all.chunks_mut(COUNT).zip(load.over_mean()).zip(&indices) {
             let of = |residual: &[Offset]| residual.get(index - first).copied().map_or(0.0, mm);
             let (rest, by_load) = (of(&beside.mean), of(&beside.by_load.mean));
@@ -43,18 +47,11 @@ impl Surface {
         let columns: Vec<&[f64]> = all.chunks(COUNT).collect();
         let figures = WallFigures::over(places.iter().zip(&columns).map(|((_, s), c)| (*s, c.to_vec())));
 
-        // Of every stretch the worst place; of several as bad as the worst of all, that one.
-        let stretch = places.len().div_ceil(DRAWN_PLACES).max(1);
-        let worst_place = figures.worst / COUNT;
-        let worst_of = |from: usize| {
-            let to = (from + stretch).min(places.len());
-            let of_all = (from..to).contains(&worst_place).then_some(worst_place);
-            of_all.or_else(|| (from..to).max_by(|a, b| largest(columns[*a]).total_cmp(&largest(columns[*b]))))
-        };
-        let kept: Vec<usize> = (0..places.len()).step_by(stretch).filter_map(worst_of).collect();
+        let (stretch, kept) = drawn_places(path, places.len(), figures.worst / COUNT, |place| largest(columns[place]));
         let drawn: Vec<usize> = kept.iter().map(|at| indices[*at]).collect();
         let base: Vec<f64> = kept.iter().flat_map(|at| columns[*at].iter().copied()).collect();
-        let alone: Vec<f64> = kept.iter().flat_map(|at| load.machine_at(*at).iter().copied()).collect();
+        let cut_walls =
+            CutWalls::of((machine, &known_states), heights(), kept.iter().map(|at| (indices[*at], walls[*at])));
 
         let tail = in_the_tail(known.prior(), known.fit()).map(|other| (Origin::Points, other, 1.0));
         let noise = neighbours(known.prior(), known.fit()).map(|(other, share)| (Origin::Points, other, float(share)));
@@ -67,8 +64,8 @@ impl Surface {
             let other = other.machine(path, own.as_deref().unwrap_or(machine.table));
             // Some columns move nothing but the datum of the part that was probed.
             let moves = !other.cuts_as(machine);
-            let walls = moves.then(|| in_mm(walls_near(&other, &known_states, heights(), &drawn)))?;
-            Some((*origin, walls.iter().zip(&alone).map(|(wall, alone)| (wall - alone) * share).collect::<Vec<f64>>()))
+            let moved = moves.then(|| cut_walls.moved_by(&other))?;
+            Some((*origin, moved.iter().flatten().map(|change| mm(*change) * share).collect::<Vec<f64>>()))
         };
         let changes: Vec<_> = machines.par_iter().filter_map(cut).collect();
         let softer = kept.iter().flat_map(|at| load.at(*at)).map(|per_load| per_load * lack(Parameter::Compliance));
@@ -109,10 +106,26 @@ impl Surface {
                 reach_mm: mm(path.setup().radius),
             });
         }
-        let worst = worst_place / stretch * COUNT + figures.worst % COUNT;
+        let worst = figures.worst / COUNT / stretch * COUNT + figures.worst % COUNT;
         let place = (figures.worst_s_mm, figures.worst_fraction * depth_mm);
         Self::of(&uncertain, worst, place).0
     }
+}
+
+/// The length of the stretches from which one place each is drawn, and these places, counted among all that are judged: where walls are alike
+/// within a stretch its middle, else the worst; of the stretch with the worst place of all that one.
+fn drawn_places(path: &Path, places: usize, worst: usize, error: impl Fn(usize) -> f64) -> (usize, Vec<usize>) {
+    let alike = usize::try_from(path.setup().radius.nm() / ALIKE / path.step().nm().max(1)).unwrap_or(1);
+    let stretch = places.div_ceil(DRAWN_PLACES).min(alike).max(places.div_ceil(MOST_DRAWN_PLACES)).max(1);
+    let of = |from: usize| {
+        let to = (from + stretch).min(places);
+        if (from..to).contains(&worst) {
+            return Some(worst);
+        }
+        let middle = (stretch <= alike).then_some(usize::midpoint(from, to - 1));
+        middle.or_else(|| (from..to).max_by(|a, b| error(*a).total_cmp(&error(*b))))
+    };
+    (stretch, (0..places).step_by(stretch).filter_map(of).collect())
 }
 
 /// Why another machine is asked.
@@ -149,9 +162,7 @@ pub(crate) const TAIL: f64 = 2.15;
 /// What a larger load does to a wall at every height: the helix and the bending cutter make it more at some and less at others, and what
 /// differs along a contour or from part to part by the load does so too.
 struct Load {
-    /// The errors that the machine leaves, mm, place by place, all heights of a place side by side.
-    machine: Vec<f64>,
-    /// Their change per unit of the natural logarithm of the load, mm.
+    /// The change per unit of the natural logarithm of the load, mm, place by place, all heights of a place side by side.
     per_load: Vec<f64>,
 }
 
@@ -159,22 +170,16 @@ struct Load {
 const LEAST_MEAN: f64 = 0.3;
 
 impl Load {
-    fn of(machine: &Loop, states: &[State], alone: &[f64], indices: &[usize], found: &Parameters) -> Self {
+    fn of(machine: &Loop, nodes: &[Node], alone: &[f64], indices: &[usize], found: &Parameters) -> Self {
         let softer = unmodelled(found).nth(SOFTER).unwrap_or(*found).machine(machine.path, machine.table);
         let by = lack(Parameter::Compliance);
-        let walls = in_mm(walls_near(&softer, states, heights(), indices));
-        let per_load = walls.iter().zip(alone).map(|(wall, alone)| (wall - alone) / by).collect();
-        Self { machine: alone.to_vec(), per_load }
+        let walls = errors(&softer, nodes, indices);
+        Self { per_load: walls.iter().zip(alone).map(|(wall, alone)| (wall - alone) / by).collect() }
     }
 
     /// The change at all heights of a place.
     fn at(&self, place: usize) -> &[f64] {
         self.per_load.get(place * COUNT..(place + 1) * COUNT).unwrap_or_default()
-    }
-
-    /// The errors at all heights of a place.
-    fn machine_at(&self, place: usize) -> &[f64] {
-        self.machine.get(place * COUNT..(place + 1) * COUNT).unwrap_or_default()
     }
 
     /// By how much the change at every height of a place is beyond that of the mean over the height, in terms of it.
@@ -204,7 +209,7 @@ fn mean(column: &[f64]) -> f64 {
 /// The wall errors that a machine leaves with a correction, empty for none, at samples of its path, mm: sample by sample, in each at
 /// [`COUNT`] even heights from the tip up; zero where no wall stands.
 pub fn errors(machine: &Loop, nodes: &[Node], places: &[usize]) -> Vec<f64> {
-    in_mm(walls_at(machine, &states(machine, nodes), heights(), places))
+    in_mm(&walls_at(machine, &states(machine, nodes), heights(), places))
 }
 
 /// The states of a machine that cuts with a correction.
@@ -215,8 +220,8 @@ fn states(machine: &Loop, nodes: &[Node]) -> Vec<State> {
     states
 }
 
-fn in_mm(walls: Vec<[Option<Offset>; COUNT]>) -> Vec<f64> {
-    walls.into_iter().flatten().map(|error| error.map_or(0.0, mm)).collect()
+fn in_mm(walls: &[[Option<WallError>; COUNT]]) -> Vec<f64> {
+    walls.iter().flatten().map(|wall| wall.map_or(0.0, |wall| mm(wall.error))).collect()
 }
 
 /// The heights of a place.
@@ -286,7 +291,7 @@ mod tests {
         let even = columns(&|_| 0.3);
         let ramp = columns(&|k| 0.21 - 0.4 * k as f64 / (COUNT - 1) as f64);
         let more = columns(&|k| -0.1 - 0.2 * k as f64 / (COUNT - 1) as f64);
-        let load = Load { machine: Vec::new(), per_load: [even, ramp, more, vec![0.0; COUNT]].concat() };
+        let load = Load { per_load: [even, ramp, more, vec![0.0; COUNT]].concat() };
         let of = |place| load.beyond(place).collect::<Vec<f64>>();
         assert!(of(0).iter().chain(&of(3)).all(|beyond| beyond.abs() < 1e-12));
         // Its mean is next to nothing: the largest change is the measure.

@@ -6,33 +6,39 @@ use truepath_ground::length::Unit;
 
 use super::dimensions::{DimensionPlan, PlannedDimension};
 
-/// The file of dimensions with its values to be typed in. `sheet` names the printed sheet.
+/// The file of dimensions with its values to be typed in, in the unit of the program. `sheet` names the printed
+/// sheet.
 pub fn table(plan: &DimensionPlan, sheet: &str) -> String {
-    let mut text = format!(
+    let unit = plan.unit;
+    let head = format!(
         "# Dimensions of the milled part, in the order of {sheet}: type what was read between the quotation marks.\n\
          # uncertainty_mm is what a reading stays within, ±, at two standard deviations (k = 2): about 95 of 100 readings.\n\
          # A dimension that cannot be taken: delete it, from [[dimension]] to its value_mm.\n\
          version = 1\n"
     );
+    let mut text = unit.keys(&head).into_owned();
     for (k, d) in plan.dimensions.iter().enumerate() {
-        let across = if d.along == "x" { "y_mm" } else { "x_mm" };
-        let of = of(d);
-        // Writing to a string cannot fail.
-        let _ = write!(
-            text,
-            "\n[[dimension]]  # {}: {of}{}; nominal {:.3}\nname = \"{}\"\nkind = \"{}\"\nalong = \"{}\"\n{across} = {}\nnear_mm = {:.3}\nz_mm = {:.3}\ninstrument = \"{}\"\nuncertainty_mm = {}\nvalue_mm = \"\"\n",
+        let key = if d.along == "x" { "y_mm" } else { "x_mm" };
+        let across = match unit {
+            Unit::Millimetre => d.across_mm.to_string(),
+            Unit::Inch => format!("{:.3}", unit.of(d.across_mm)),
+        };
+        let one = format!(
+            "\n[[dimension]]  # {}: {}{}; nominal {:.3} {}\nname = \"{}\"\nkind = \"{}\"\nalong = \"{}\"\n{key} = {across}\nnear_mm = {:.3}\nz_mm = {:.3}\ninstrument = \"{}\"\nuncertainty_mm = {}\nvalue_mm = \"\"\n",
             k + 1,
-            d.words(Unit::Millimetre),
-            d.nominal_mm,
+            of(d),
+            d.words(unit),
+            unit.of(d.nominal_mm),
+            unit.name(),
             k + 1,
             d.kind,
             d.along,
-            d.across_mm,
-            middle(d),
-            d.z_mm,
+            unit.of(middle(d)),
+            unit.of(d.z_mm),
             plan.instrument,
-            plan.uncertainty_mm,
+            unit.of(plan.uncertainty_mm),
         );
+        text += &unit.keys(&one);
     }
     text
 }
@@ -50,30 +56,35 @@ fn middle(d: &PlannedDimension) -> f64 {
 /// The sheet: what to measure where, with room for the numbers, in HTML that needs nothing else. `table` names the file that they
 /// are typed into.
 pub fn sheet(plan: &DimensionPlan, title: &str, table: &str) -> String {
-    let mut rows = String::new();
+    let (mut rows, unit, name) = (String::new(), plan.unit, plan.unit.name());
     for (k, d) in plan.dimensions.iter().enumerate() {
         let contour = escaped(&of(d));
         let _ = writeln!(
             rows,
             "<tr><td>{}</td><td>{contour}{}<br><small>{}</small></td><td>{:.2}</td><td>{:.3}</td><td class=room></td></tr>",
             k + 1,
-            escaped(&d.words(Unit::Millimetre)),
+            escaped(&d.words(unit)),
             escaped(&d.why),
-            d.z_mm,
-            d.nominal_mm
+            unit.of(d.z_mm),
+            unit.of(d.nominal_mm)
         );
     }
     let title = escaped(title);
-    let [before, after] = plan.wall_sigma_mm;
+    let within = match unit {
+        Unit::Millimetre => plan.uncertainty_mm.to_string(),
+        Unit::Inch => format!("{:.3}", unit.of(plan.uncertainty_mm)),
+    };
+    let beside = if unit == Unit::Inch { "Twenty thousandths" } else { "Half a millimetre" };
+    let [before, after] = plan.wall_sigma_mm.map(|sigma| unit.of(sigma));
     format!(
         "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>{title}: dimensions</title>\n<style>{STYLE}</style>\n\
          <h1>{title}: dimensions to measure</h1>\n\
-         <p>Take them on the part as it was milled, cleaned and cold, with the same instrument ({}, ± {} mm with k = 2: about 95 of 100 readings stay within). Coordinates are those of the program. Half a millimetre beside the line does not matter. Let only the tips of the jaws touch, at the Z given; read each dimension twice and write down the mean.</p>\n\
-         {}\n<table><thead><tr><th>No.</th><th>what</th><th>Z mm</th><th>nominal mm</th><th>read mm</th></tr></thead>\n<tbody>\n{rows}</tbody></table>\n\
-         <p>Type the numbers into {}. They leave the predicted wall uncertain by {after:.3} mm (one standard deviation); {before:.3} mm without them.</p>\n\
+         <p>Take them on the part as it was milled, cleaned and cold, with the same instrument ({}, ± {} {name} with k = 2: about 95 of 100 readings stay within). Coordinates are those of the program. {beside} beside the line does not matter. Let only the tips of the jaws touch, at the Z given; read each dimension twice and write down the mean.</p>\n\
+         {}\n<table><thead><tr><th>No.</th><th>what</th><th>Z {name}</th><th>nominal {name}</th><th>read {name}</th></tr></thead>\n<tbody>\n{rows}</tbody></table>\n\
+         <p>Type the numbers into {}. They leave the predicted wall uncertain by {after:.3} {name} (one standard deviation); {before:.3} {name} without them.</p>\n\
          <p class=sign>part ................................ instrument ................................ date and name ................................</p>\n</html>\n",
         plan.instrument.replace('_', " "),
-        plan.uncertainty_mm,
+        within,
         drawing(plan),
         escaped(table)
     )

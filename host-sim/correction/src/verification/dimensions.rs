@@ -13,6 +13,7 @@ use truepath_core::cut::Path;
 use truepath_core::identify::Observation;
 use truepath_core::units::{Offset, Position};
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::hypotenuse::hypot;
 use truepath_ground::length::Unit;
 use truepath_ground::units::{mm, nm, real};
 use truepath_job::dimension::{Axis, Crossing, Instrument, Kind, Walls};
@@ -440,7 +441,7 @@ impl Said {
     /// Sensitivities: what a hand that sets the jaw beside the line adds belongs to the noise.
     fn row(&self) -> Row {
         let set = 0.5 * (self.beside_mm[1] - self.beside_mm[0]);
-        let deviation = self.deviation_mm.hypot(set);
+        let deviation = hypot(self.deviation_mm, set);
         self.change.map(|change| change / deviation)
     }
 }

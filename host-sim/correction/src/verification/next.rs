@@ -101,7 +101,7 @@ pub fn plan_next(
         wall_sigma_mm: [before, largest(after, &wall).0],
         ..Plan::of(setup, pass, settings, places)
     };
-    plan.warnings.extend(doubt(&gains, settings, noise, pass.unit()));
+    plan.warnings.extend(pass.unit().remarks(|unit| doubt(&gains, settings, noise, unit)));
     progress(1.0);
     Ok(plan)
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use truepath_core::cut::WallLaw;
 use truepath_core::identify::Prior;
 use truepath_ground::diagnostics::Failure;
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Remark, Unit};
 use truepath_ground::units::mm;
 use truepath_job::job::Assumed;
 use truepath_job::pass::{Pass, PathBuffer};
@@ -125,7 +125,7 @@ pub struct Plan {
     /// What the job does not say and was taken from the program or a default.
     pub assumed: Vec<Assumed>,
     /// What the user should know.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Remark>,
 }
 
 impl Plan {
@@ -221,13 +221,13 @@ pub fn plan_every(passes: &[Pass], settings: &Settings, progress: &mut dyn FnMut
         match Wall::of(pass, passes, settings, &mut kept_off, told) {
             Ok(wall) => {
                 if let Some(first) = walls.first().filter(|first| !first.setup.shares_offset(&wall.setup)) {
-                    warnings.push(other_offset(pass, first.pass));
+                    warnings.push(other_offset(pass, first.pass).into());
                     continue;
                 }
                 walls.push(wall);
             }
             Err(failure) if passes.len() > 1 => {
-                warnings.push(format!("{} is not touched: {}", name(pass), in_short(&failure)));
+                warnings.push(format!("{} is not touched: {}", name(pass), in_short(&failure)).into());
                 refused = refused.or(Some(failure));
             }
             Err(failure) => return Err(failure),
@@ -269,7 +269,8 @@ pub fn plan_every(passes: &[Pass], settings: &Settings, progress: &mut dyn FnMut
     joint.warnings.extend(warnings);
     let mut plan =
         Plan { kept_off, unknowns: reason::unknowns(&chosen.known, &prior), wall_sigma_mm: chosen.wall_sigma, ..joint };
-    plan.warnings.extend(plan_warnings(&plan, law, unit));
+    let said = unit.remarks(|unit| plan_warnings(&plan, law, unit));
+    plan.warnings.extend(said);
     progress(1.0);
     Ok(plan)
 }

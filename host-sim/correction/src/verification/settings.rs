@@ -115,8 +115,16 @@ fn within(option: &str, value: f64, range: RangeInclusive<f64>, unit: &str) -> R
     if range.contains(&value) {
         return Ok(());
     }
-    let expected = format!("{} to {}{unit}", range.start(), range.end());
-    Err(InputError::new(V001, format!("{option} is {value}"), expected, format!("give {option} a value in this range")))
+    let expected = match unit {
+        " mm" => length::between(*range.start(), *range.end()),
+        _ => format!("{} to {}{unit}", range.start(), range.end()),
+    };
+    Err(InputError::new(
+        V001,
+        format!("{option} is {value}{unit}"),
+        expected,
+        format!("give {option} a value in this range"),
+    ))
 }
 
 #[cfg(test)]
@@ -130,7 +138,7 @@ mod tests {
         assert_eq!(refused(Settings { places: 0, ..Settings::default() }), "--points is 0; expected 1 to 64");
         assert_eq!(
             refused(Settings { overtravel: f64::NAN, ..Settings::default() }),
-            "--overtravel is NaN; expected 0.1 to 5 mm"
+            "--overtravel is NaN mm; expected 0.1 to 5 mm (0.00394 to 0.196 in)"
         );
         assert!(refused(Settings { feed_slow: 400.0, ..Settings::default() }).starts_with("--feed-slow 400 is faster"));
     }

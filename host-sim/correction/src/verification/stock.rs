@@ -68,11 +68,11 @@ pub fn plan_stock(
         };
         match found() {
             Ok(wall) => match walls.first().filter(|first| !first.setup.shares_offset(&wall.setup)) {
-                Some(first) => warnings.push(other_offset(pass, first.pass)),
+                Some(first) => warnings.push(other_offset(pass, first.pass).into()),
                 None => walls.push(wall),
             },
             Err(failure) if passes.len() > 1 => {
-                warnings.push(format!("{} is not touched: {}", name(pass), in_short(&failure)));
+                warnings.push(format!("{} is not touched: {}", name(pass), in_short(&failure)).into());
                 refused = refused.or(Some(failure));
             }
             Err(failure) => return Err(failure),
@@ -124,10 +124,11 @@ pub fn plan_stock(
     plan.kept_off = kept_off;
     plan.warnings.extend(warnings);
     if plan.places.len() < count as usize {
-        plan.warnings.push(format!("{} places instead of {count}: no more of them may be touched", plan.places.len()));
+        let said = format!("{} places instead of {count}: no more of them may be touched", plan.places.len());
+        plan.warnings.push(said.into());
     }
     if settings.free_width.is_some() {
-        plan.warnings.push("--free-width is taken on trust: nothing else than the contour's wall is known".to_owned());
+        plan.warnings.push("--free-width is taken on trust: nothing else than the contour's wall is known".into());
     }
     Ok(plan)
 }

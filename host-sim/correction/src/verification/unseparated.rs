@@ -9,6 +9,8 @@ use truepath_core::cut::Path;
 use truepath_core::identify::Observation;
 use truepath_core::probe::Contact;
 use truepath_core::units::{Offset, Position};
+use truepath_ground::hypotenuse::hypot;
+use truepath_ground::length::{Remark, Unit};
 use truepath_ground::units::{float, mm};
 use truepath_job::dimension::{Axis, Half, Placed};
 use truepath_job::measurement::Measurement;
@@ -36,7 +38,7 @@ struct Between<'a> {
 
 /// A sentence for each axis along which the walls of the widths of a contour stay apart; none where one of them was measured by
 /// itself. `path` is that of the pass under the identified wall law.
-pub fn unseparated(path: &Path, measurement: &Measurement, identified: &Identification) -> Vec<String> {
+pub fn unseparated(path: &Path, measurement: &Measurement, identified: &Identification, unit: Unit) -> Vec<Remark> {
     let all = measurement.dimensions.iter().flat_map(|dimensions| &dimensions.placed);
     let widths: Vec<Between<'_>> = all
         .filter(|placed| placed.half.is_none() && !by_itself(measurement, placed.dimension.along))
@@ -45,12 +47,16 @@ pub fn unseparated(path: &Path, measurement: &Measurement, identified: &Identifi
             Some(Between { placed, touches })
         })
         .collect();
-    left_open(&[*path], &widths, identified)
+    left_open(&[*path], &widths, identified, unit)
 }
 
 /// The same of the widths between two contours, which is a sentence for each axis along which neither of the contours was measured by
 /// itself.
-pub fn unseparated_contours(walls: &[(Path<'_>, &Measurement)], identified: &Identification) -> Vec<String> {
+pub fn unseparated_contours(
+    walls: &[(Path<'_>, &Measurement)],
+    identified: &Identification,
+    unit: Unit,
+) -> Vec<Remark> {
     let halves = |wall: usize| {
         let dimensions = walls.get(wall).and_then(|(_, measurement)| measurement.dimensions.as_ref());
         dimensions.into_iter().flat_map(|dimensions| &dimensions.placed)
@@ -71,7 +77,7 @@ pub fn unseparated_contours(walls: &[(Path<'_>, &Measurement)], identified: &Ide
         }
     }
     let paths: Vec<Path<'_>> = walls.iter().map(|(path, _)| *path).collect();
-    left_open(&paths, &widths, identified)
+    left_open(&paths, &widths, identified, unit)
 }
 
 /// Whether a wall square to an axis was measured by itself.
@@ -97,7 +103,7 @@ fn wall_rows(path: &Path, mut touches: Vec<Observation>, identified: &Identifica
 }
 
 /// A sentence for each axis along which what is between walls leaves their difference open.
-fn left_open(paths: &[Path<'_>], widths: &[Between<'_>], identified: &Identification) -> Vec<String> {
+fn left_open(paths: &[Path<'_>], widths: &[Between<'_>], identified: &Identification, unit: Unit) -> Vec<Remark> {
     let told = |(at, path): (usize, &Path<'_>)| {
         let touches = widths.iter().flat_map(|width| width.touches).filter(|(wall, _)| *wall == at);
         let touches: Vec<Observation> = touches.map(|(_, touch)| touch).collect();
@@ -105,28 +111,31 @@ fn left_open(paths: &[Path<'_>], widths: &[Between<'_>], identified: &Identifica
     };
     let mut told: Vec<_> = paths.iter().enumerate().map(told).collect();
     let known = Covariance::of(&identified.fit().covariance, false);
-    let mut worst: Vec<(Axis, f64, String)> = Vec::new();
+    let mut worst: Vec<(Axis, f64, Remark)> = Vec::new();
     for Between { placed, touches } in widths {
         let [first, second] = touches.map(|(wall, _)| told.get_mut(wall).and_then(Iterator::next));
         let (Some((one, by_stock)), Some((other, by_other_stock))) = (first, second) else { continue };
         let [uneven, other_uneven] = touches.map(|(wall, _)| UNEVEN * mm(paths[wall].setup().allowance));
         let difference: Row = std::array::from_fn(|k| one[k] - other[k]);
-        let left = known.sigma(&difference.into()).hypot((uneven * by_stock).hypot(other_uneven * by_other_stock));
+        let left = hypot(known.sigma(&difference.into()), hypot(uneven * by_stock, other_uneven * by_other_stock));
         let along = placed.dimension.along;
         if left < ALIKE || worst.iter().any(|(axis, most, _)| *axis == along && *most >= left) {
             continue;
         }
         let wall = along.of([placed.contact.point.x, placed.contact.point.y]) - Position::ZERO;
         // The difference is twice that of one wall from the mean of both.
-        let after = 2.0 * mm(PROBE).hypot(mm(placed.noise));
+        let after = 2.0 * hypot(mm(PROBE), mm(placed.noise));
         let what = if placed.half.is_some() { "widths between two contours" } else { "widths" };
-        let text = format!(
-            "the {what} along {along} see the sum of two walls: these may differ by {:.3} mm (2 sigma, \"{}\"), where the stock is not the same on both sides, and nothing that was measured tells. A distance from a face (kind = \"distance\") to the wall at {along}{:.2}, or one probe point there, would tell it to {:.3} mm",
-            2.0 * left,
-            placed.dimension.name,
-            mm(wall),
-            2.0 * after.min(left)
-        );
+        let text = unit.remark(|unit| {
+            format!(
+                "the {what} along {along} see the sum of two walls: these may differ by {:.3} {name} (2 sigma, \"{}\"), where the stock is not the same on both sides, and nothing that was measured tells. A distance from a face (kind = \"distance\") to the wall at {along}{:.2}, or one probe point there, would tell it to {:.3} {name}",
+                unit.of(2.0 * left),
+                placed.dimension.name,
+                unit.of(mm(wall)),
+                unit.of(2.0 * after.min(left)),
+                name = unit.name()
+            )
+        });
         worst.retain(|(axis, ..)| *axis != along);
         worst.push((along, left, text));
     }

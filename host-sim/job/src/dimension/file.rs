@@ -9,6 +9,7 @@ use truepath_ground::codes::J007;
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::document::{Section, Spans};
+use truepath_ground::length::Unit;
 use truepath_ground::limits::Limits;
 use truepath_ground::notation::{parse, version};
 
@@ -145,6 +146,8 @@ pub struct Dimension {
     pub uncertainty: Offset,
     /// What was read.
     pub value: Offset,
+    /// The unit of the key that it stands under.
+    pub unit: Unit,
     /// Where the value stands in the file.
     pub value_span: Range<usize>,
     /// Where the place stands in the file.
@@ -168,7 +171,12 @@ const FILE: &str = "the file of dimensions";
 /// place.
 pub(super) fn read(source: &Source) -> Result<Vec<Dimension>, InputError> {
     if let Some(span) = without_value(source) {
-        return Err(not_filled_in("value_mm", "a dimension").at(source, span));
+        let key = if source.bytes().get(span.clone()).is_some_and(|text| text.starts_with(b"value_in")) {
+            "value_in"
+        } else {
+            "value_mm"
+        };
+        return Err(not_filled_in(key, "a dimension").at(source, span.end - 1..span.end));
     }
     let table = parse(source, FILE)?;
     let spans: RefCell<Spans> = RefCell::default();
@@ -194,14 +202,15 @@ pub(super) fn read(source: &Source) -> Result<Vec<Dimension>, InputError> {
     sections.iter().map(one).collect()
 }
 
-/// A key of a value with nothing behind it, which is no TOML.
+/// A key of a value with nothing behind it, which is no TOML, and its equals sign.
 fn without_value(source: &Source) -> Option<Range<usize>> {
     let text = std::str::from_utf8(source.bytes()).ok()?;
     let mut at = 0;
     for line in text.split_inclusive('\n') {
         let bare = line.split('#').next().unwrap_or_default().trim_end();
-        if bare.trim_start().strip_prefix("value_mm").is_some_and(|rest| rest.trim() == "=") {
-            return Some(at + bare.len() - 1..at + bare.len());
+        let named = ["value_mm", "value_in"].into_iter().find_map(|key| bare.trim_start().strip_prefix(key));
+        if named.is_some_and(|rest| rest.trim() == "=") {
+            return Some(at + bare.len() - bare.trim_start().len()..at + bare.len());
         }
         at += line.len();
     }
@@ -209,7 +218,7 @@ fn without_value(source: &Source) -> Option<Range<usize>> {
 }
 
 fn not_filled_in(key: &str, name: &str) -> InputError {
-    M043.error(format!("{key} of {name} is empty"), "what was measured, mm")
+    M043.error(format!("{key} of {name} is empty"), "what was measured, in the unit of the key")
 }
 
 fn dimension(source: &Source, section: &Section<'_>, results: Option<&Results>) -> Result<Dimension, InputError> {
@@ -245,6 +254,7 @@ fn dimension(source: &Source, section: &Section<'_>, results: Option<&Results>) 
     let uncertainty = section.number("uncertainty_mm", UNCERTAINTY)?;
     let uncertainty = uncertainty.map_or(instrument.uncertainty(), Decimal::as_mm);
     let name = given.unwrap_or_else(|| named(kind, along, across, level));
+    let unit = section.value("value_mm").map_or(section.unit(), |value| value.unit());
     let (value, value_span) = value(source, section, results, &name)?;
     section.close()?;
     Ok(Dimension {
@@ -259,6 +269,7 @@ fn dimension(source: &Source, section: &Section<'_>, results: Option<&Results>) 
         instrument,
         uncertainty,
         value,
+        unit,
         value_span,
         place_span,
         level_span,
@@ -352,19 +363,27 @@ fn value(
         if let Some(results) = results {
             return Ok((results.value(name)?.as_mm(), section.place()));
         }
-        return Err(section.missing("value_mm", "what was measured, mm"));
+        return Err(section.missing("value_mm", "what was measured, in the unit of the key"));
     };
     let Some(text) = value.raw.as_str() else {
         return Ok((section.number_in(&value, VALUE)?.as_mm(), value.span));
     };
     let text = text.trim();
     if text.is_empty() {
-        return Err(not_filled_in("value_mm", name).at(source, value.span));
+        return Err(not_filled_in(&value.unit().keys("value_mm"), name).at(source, value.span));
     }
     match Decimal::parse(&text.replace(',', ".")).map(|number| value.mm(number)) {
         Some(number) if VALUE.admits(number) => Ok((number.as_mm(), value.span)),
-        Some(_) => Err(section.out_of_range(&value, &VALUE.phrase(), "type what was measured, in the unit of the key")),
-        None => Err(section.wrong_type(&value, &format!("a number, {}", VALUE.phrase()), "type the number alone")),
+        Some(_) => Err(section.out_of_range(
+            &value,
+            &VALUE.phrase_in(value.unit()),
+            "type what was measured, in the unit of the key",
+        )),
+        None => Err(section.wrong_type(
+            &value,
+            &format!("a number, {}", VALUE.phrase_in(value.unit())),
+            "type the number alone",
+        )),
     }
 }
 

@@ -14,6 +14,7 @@ use std::ops::Range;
 use truepath_core::units::{Offset, Position};
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
+use truepath_ground::length::Unit;
 use truepath_ground::units::{mm, nm};
 
 use super::file::{Across, Dimension, FACE, INSTRUMENTS, Instrument, Kind, Level};
@@ -65,6 +66,7 @@ fn dimension(length: &Length) -> Option<Dimension> {
         instrument,
         uncertainty: stated.unwrap_or(instrument.uncertainty()),
         value: length.value.as_mm(),
+        unit: Unit::Millimetre,
         value_span: span.clone(),
         place_span: span.clone(),
         level_span: span,

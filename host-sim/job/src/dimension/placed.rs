@@ -6,6 +6,7 @@ use std::ops::Range;
 use truepath_core::probe::{Contact, Reading, Rejected};
 use truepath_core::units::{Offset, Position};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::length::Unit;
 use truepath_ground::units::{mm, nm};
 
 use super::file::{Across, Dimension, Kind, Level};
@@ -103,20 +104,20 @@ impl Candidate {
         (self.nominal_mm - value).abs() < FAR
     }
 
-    fn words(&self, along: Axis) -> String {
-        let from = format!("{along}{:.3}", self.first.at_mm);
-        let to = self.second.map_or_else(String::new, |second| format!(" to {along}{:.3}", second.at_mm));
-        format!("{:.3} mm ({from}{to})", self.nominal_mm)
+    fn words(&self, along: Axis, unit: Unit) -> String {
+        let from = format!("{along}{:.3}", unit.of(self.first.at_mm));
+        let to = self.second.map_or_else(String::new, |second| format!(" to {along}{:.3}", unit.of(second.at_mm)));
+        format!("{:.3} {} ({from}{to})", unit.of(self.nominal_mm), unit.name())
     }
 }
 
 /// Finds a dimension among the walls of some contours; returns the number of the contour it is of, or of both with its halves.
-/// `number` is a number of its own.
+/// `number` is a number of its own; errors are said in a unit.
 ///
 /// # Errors
 /// `M045` to `M049` and `M051`, at the key that is wrong.
 pub(crate) fn placed(
-    source: &Source,
+    (source, unit): (&Source, Unit),
     walls: &[Walls<'_>],
     dimension: &Dimension,
     lines_before: u32,
@@ -142,20 +143,20 @@ pub(crate) fn placed(
     }
     if seen.is_empty() {
         return Err(match heights.first() {
-            Some(heights) => off_height(source, dimension, *heights),
-            None => no_wall(source, walls, dimension),
+            Some(heights) => off_height((source, unit), dimension, *heights),
+            None => no_wall((source, unit), walls, dimension),
         }
         .into());
     }
     let all: Vec<Crossing> = seen.iter().map(|seen| seen.crossing).collect();
     let (between, at_other_heights) = between_contours(source, dimension, seen);
     candidates.extend(between);
-    let chosen = match chosen(source, dimension, candidates, &all) {
+    let chosen = match chosen((source, unit), dimension, candidates, &all) {
         // What is nothing of one height may be something of two.
         Err(refused) if refused.code() != M049.code => return Err(at_other_heights.unwrap_or(refused).into()),
         chosen => chosen?,
     };
-    refuse_oblique(source, dimension, &chosen)?;
+    refuse_oblique((source, unit), dimension, &chosen)?;
     let file_line = source.line_column(dimension.value_span.start).0;
     let file_line = u32::try_from(file_line).unwrap_or(u32::MAX);
     let line = lines_before.saturating_add(file_line);
@@ -206,7 +207,7 @@ fn between_contours(
         } else if (nominal_mm - mm(dimension.value)).abs() < FAR {
             let found =
                 format!("{} lies between two contours whose cutter's tips are not at one height", dimension.name);
-            let error = M051.error(found, "z_mm, a height in program coordinates");
+            let error = M051.error(found, "z_mm, a height in program coordinates").with_keys_in(dimension.unit);
             at_other_heights = Some(error.at(source, dimension.level_span.clone()));
         }
     }
@@ -253,14 +254,14 @@ fn order<const N: usize>(a: &[f64; N], b: &[f64; N]) -> Ordering {
 
 /// The candidate that is meant: the one around `near_mm`, or the only one that the value fits.
 fn chosen(
-    source: &Source,
+    (source, unit): (&Source, Unit),
     dimension: &Dimension,
     candidates: Vec<Candidate>,
     seen: &[Crossing],
 ) -> Result<Candidate, InputError> {
     let (along, value) = (dimension.along, mm(dimension.value));
     if candidates.is_empty() {
-        return Err(other_kind(source, dimension, seen));
+        return Err(other_kind((source, unit), dimension, seen));
     }
     let candidates: Vec<Candidate> = match dimension.near {
         None => candidates,
@@ -274,7 +275,7 @@ fn chosen(
             nearest.into_iter().collect()
         }
     };
-    let listed: Vec<String> = candidates.iter().map(|candidate| candidate.words(along)).collect();
+    let listed: Vec<String> = candidates.iter().map(|candidate| candidate.words(along, unit)).collect();
     let nominals: Vec<f64> = candidates.iter().map(|candidate| candidate.nominal_mm).collect();
     let mut fitting: Vec<Candidate> = candidates.into_iter().filter(|candidate| candidate.fits(value)).collect();
     match (fitting.pop(), fitting.is_empty()) {
@@ -282,18 +283,20 @@ fn chosen(
         (Some(_), false) => {
             let found = format!("{} fits several places: {}", dimension.name, listed.join(", "));
             let expected = "near_mm, a coordinate between the two walls";
-            Err(M049.error(found, expected).at(source, dimension.place_span.clone()))
+            Err(M049.error(found, expected).with_keys_in(dimension.unit).at(source, dimension.place_span.clone()))
         }
-        (None, _) => Err(far(source, dimension, &nominals, &listed)),
+        (None, _) => Err(far((source, unit), dimension, &nominals, &listed)),
     }
 }
 
 /// A value that is no deviation of any nominal one.
-fn far(source: &Source, dimension: &Dimension, nominals: &[f64], listed: &[String]) -> InputError {
+fn far((source, unit): (&Source, Unit), dimension: &Dimension, nominals: &[f64], listed: &[String]) -> InputError {
     let value = mm(dimension.value);
     let fits = |factor: f64| nominals.iter().any(|nominal| (value * factor - nominal).abs() < FAR.min(0.02 * nominal));
     let help = if fits(25.4) {
-        "it looks like inches: type it in millimetres"
+        "it looks like inches: type it in millimetres, or write value_in"
+    } else if fits(1.0 / 25.4) {
+        "it looks like millimetres: write value_mm"
     } else if fits(2.0) {
         "it looks like half of it, a radius: type the whole dimension"
     } else if fits(0.5) {
@@ -305,13 +308,13 @@ fn far(source: &Source, dimension: &Dimension, nominals: &[f64], listed: &[Strin
     } else {
         M047.remedy
     };
-    let found = format!("{} is {value} mm", dimension.name);
-    let expected = format!("within {FAR} mm of {}", listed.join(" or "));
+    let found = format!("{} is {} {}", dimension.name, unit.of(value), unit.name());
+    let expected = format!("within {:.1} {} of {}", unit.of(FAR), unit.name(), listed.join(" or "));
     InputError::new(M047, found, expected, help).at(source, dimension.value_span.clone())
 }
 
 /// Walls on the line between which no such dimension lies.
-fn other_kind(source: &Source, dimension: &Dimension, seen: &[Crossing]) -> InputError {
+fn other_kind((source, unit): (&Source, Unit), dimension: &Dimension, seen: &[Crossing]) -> InputError {
     let along = dimension.along;
     let inside = |pair: &[Crossing]| pair[0].towards < 0.0 && pair[1].towards > 0.0;
     let solid = |pair: &[Crossing]| pair[0].towards > 0.0 && pair[1].towards < 0.0;
@@ -325,17 +328,18 @@ fn other_kind(source: &Source, dimension: &Dimension, seen: &[Crossing]) -> Inpu
         }
         _ => M045.remedy,
     };
-    let at: Vec<String> = seen.iter().map(|crossing| format!("{along}{:.3}", crossing.at_mm)).collect();
+    let at: Vec<String> = seen.iter().map(|crossing| format!("{along}{:.3}", unit.of(crossing.at_mm))).collect();
     let found = format!("no {} of this cut on the line of {}", dimension.kind.name(), dimension.name);
     let expected = format!("one between the walls at {}", at.join(", "));
-    InputError::new(M045, found, expected, help).at(source, dimension.place_span.clone())
+    InputError::new(M045, found, expected, help).with_keys_in(dimension.unit).at(source, dimension.place_span.clone())
 }
 
-fn no_wall(source: &Source, walls: &[Walls<'_>], dimension: &Dimension) -> InputError {
+fn no_wall((source, unit): (&Source, Unit), walls: &[Walls<'_>], dimension: &Dimension) -> InputError {
     let across = dimension.along.other();
     let extents: Vec<String> = walls
         .iter()
         .filter_map(|wall| wall.extent(across))
+        .map(|ends| ends.map(|end| unit.of(end)))
         .map(|[from, to]| format!("{across}{from:.3} to {across}{to:.3}"))
         .collect();
     let found = format!("no wall of this cut lies on the line of {}", dimension.name);
@@ -343,25 +347,31 @@ fn no_wall(source: &Source, walls: &[Walls<'_>], dimension: &Dimension) -> Input
     M045.error(found, expected).at(source, dimension.place_span.clone())
 }
 
-fn off_height(source: &Source, dimension: &Dimension, heights: [Position; 2]) -> InputError {
+fn off_height((source, unit): (&Source, Unit), dimension: &Dimension, heights: [Position; 2]) -> InputError {
     let [tip, top] = heights.map(|z| (z - Position::ZERO).nm() as f64 / 1e6);
     let found = format!("{} is above or below the cut", dimension.name);
+    let name = unit.name();
     let expected = match dimension.level {
-        Level::Z(_) => format!("z_mm from {tip} to {top}"),
-        Level::AboveTip(_) => format!("height_mm from 0 to {}", top - tip),
+        Level::Z(_) => format!("z_mm from {} to {} {name}", unit.of(tip), unit.of(top)),
+        Level::AboveTip(_) => format!("height_mm from 0 to {} {name}", unit.of(top - tip)),
     };
-    M048.error(found, expected).at(source, dimension.level_span.clone())
+    M048.error(found, expected).with_keys_in(dimension.unit).at(source, dimension.level_span.clone())
 }
 
 /// Refuses a wall that no jaw lies flat against.
-fn refuse_oblique(source: &Source, dimension: &Dimension, chosen: &Candidate) -> Result<(), InputError> {
+fn refuse_oblique(
+    (source, unit): (&Source, Unit),
+    dimension: &Dimension,
+    chosen: &Candidate,
+) -> Result<(), InputError> {
     let along = dimension.along;
     let crossings = std::iter::once(&chosen.first).chain(&chosen.second);
     let Some(oblique) = crossings.into_iter().find(|crossing| crossing.towards.abs() < SQUARE) else { return Ok(()) };
     let angle = oblique.towards.abs().min(1.0).acos().to_degrees();
     let found = format!(
         "the wall at {along}{:.3} on the line of {} is {angle:.0} degrees off square to {along}",
-        oblique.at_mm, dimension.name
+        unit.of(oblique.at_mm),
+        dimension.name
     );
     let expected = "a wall square to the direction that is measured along, or the middle of a round one";
     Err(M046.error(found, expected).at(source, dimension.place_span.clone()))

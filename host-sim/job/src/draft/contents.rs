@@ -1,6 +1,6 @@
 //! What a draft holds: the keys of a job in the making, and the contours of its program.
 
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Remark, Unit};
 
 /// Where a value comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -138,7 +138,7 @@ pub struct Draft {
     /// What the program says of the cut, for a comment.
     pub facts: Vec<String>,
     /// What the user should know.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Remark>,
     /// `--dialect` of `truepath probe`.
     pub probe_control: Option<&'static str>,
 }

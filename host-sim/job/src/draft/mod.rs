@@ -26,7 +26,8 @@ use truepath_core::geometry::Side;
 use truepath_core::job::Compensation;
 use truepath_core::units::{Offset, Position};
 use truepath_ground::diagnostics::{Failure, Source};
-use truepath_ground::units::{float, mm};
+use truepath_ground::length::{Remark, Unit};
+use truepath_ground::units::{float, mm, nm};
 
 use crate::drawn::drawn;
 use crate::feature::{LARGEST_SEARCH, Survey};
@@ -65,7 +66,7 @@ impl Draft {
     /// # Errors
     /// What a job cannot hold.
     pub fn check(&self) -> Result<(), Failure> {
-        let text = text::bare(&stand_ins(&self.entries));
+        let text = text::bare(&stand_ins(&self.entries), self.unit);
         JobFile::parse(Source::new("the answer", text.into_bytes()), Path::new(""))?;
         Ok(())
     }
@@ -82,7 +83,7 @@ struct Drafting<'a> {
     given: &'a BTreeMap<String, String>,
     post: Post,
     entries: Vec<Entry>,
-    warnings: Vec<String>,
+    warnings: Vec<Remark>,
     facts: Vec<String>,
 }
 
@@ -129,8 +130,7 @@ impl<'a> Drafting<'a> {
             alike &= side.is_none() || shown.as_ref().is_some_and(|shown| Some(shown.side) == side);
         }
         if several && !alike {
-            self.warnings
-                .push("the walls of the program do not all show the same side: one of them is taken".to_owned());
+            self.warnings.push("the walls of the program do not all show the same side: one of them is taken".into());
         }
         self.wall(candidate, shown.as_ref());
         self.stock(candidate, diameter);
@@ -197,7 +197,7 @@ impl<'a> Drafting<'a> {
 
     /// A job with what is known so far.
     fn job(&self, entries: &[Entry]) -> Result<JobFile, Failure> {
-        let text = text::bare(entries);
+        let text = text::bare(entries, self.post.unit.told());
         Ok(JobFile::parse(Source::new("job.toml", text.into_bytes()), Path::new(""))?)
     }
 
@@ -207,7 +207,7 @@ impl<'a> Drafting<'a> {
 
     /// A job that only reads: cutter and all else are stand-ins.
     fn reader(&self, diameter: f64) -> Result<JobFile, Failure> {
-        let mut text = text::bare(&self.entries);
+        let mut text = text::bare(&self.entries, self.post.unit.told());
         text += &format!(
             "[stock]\nallowance_mm = {}\n[tool]\ndiameter_mm = {diameter}\nteeth = 1\nhelix_deg = 30\n",
             usual_allowance(diameter).max(0.001)
@@ -353,7 +353,13 @@ impl<'a> Drafting<'a> {
                 Entry::read("stock.allowance_mm", &value, "what the pass before leaves", line)
             }
             _ => {
-                let value = usual_allowance(diameter).max(0.01).to_string();
+                let usual = usual_allowance(diameter).max(0.01);
+                // A program in inches has it in thousandths.
+                let value = match self.post.unit.told() {
+                    Unit::Millimetre => usual,
+                    Unit::Inch => mm(nm(0.0254 * (usual / 0.0254).round().max(1.0))),
+                };
+                let value = value.to_string();
                 let why = "stock on the wall before this pass; a twentieth of the diameter is usual";
                 Entry::default("stock.allowance_mm", &value, why, true)
             }
@@ -397,17 +403,17 @@ impl<'a> Drafting<'a> {
         let helix = Entry::default("tool.helix_deg", USUAL_HELIX, "helix angle; 30 to 45 is what is sold", false);
         self.put("tool.helix_deg", Some(helix));
         if let Some(note) = &own {
-            let corner = note.corner_mm.unwrap_or(0.0);
+            let (corner, unit) = (note.corner_mm.unwrap_or(0.0), self.post.unit.told());
             if note.shape == Shape::Ball {
-                self.warnings.push(format!(
-                    "line {}: a ball end leaves a wall only above its radius, {corner} mm: touch there",
-                    note.line
-                ));
+                self.warnings.push(unit.remark(|unit| {
+                    let said = "a ball end leaves a wall only above its radius";
+                    format!("line {}: {said}, {} {}: touch there", note.line, unit.of(corner), unit.name())
+                }));
             } else if corner > 0.0 {
-                self.warnings.push(format!(
-                    "line {}: a corner radius of {corner} mm leaves no wall below that height: touch above it",
-                    note.line
-                ));
+                self.warnings.push(unit.remark(|unit| {
+                    let said = "leaves no wall below that height: touch above it";
+                    format!("line {}: a corner radius of {} {} {said}", note.line, unit.of(corner), unit.name())
+                }));
             }
         }
     }
@@ -506,16 +512,16 @@ impl<'a> Drafting<'a> {
             Some(Err(failure)) => {
                 if let Failure::Input(error) = &failure {
                     let first = error.found().lines().next().unwrap_or_default().to_owned();
-                    self.warnings.push(format!("not all walls of the program can be taken together: {first}"));
+                    self.warnings.push(format!("not all walls of the program can be taken together: {first}").into());
                 }
                 (self.passes(Some(&candidate.note)), true)
             }
             None => (self.passes(several.then_some(&candidate.note)), several),
         };
         let missing = |code: &str| match code {
-            "J040" => Some(("cut.axial_depth_mm", "10", "depth of the cutter in the stock, mm")),
+            "J040" => Some(("cut.axial_depth_mm", "10", "depth of the cutter in the stock")),
             "J016" => Some(("cut.spindle_rpm", "5000", "spindle speed, rev/min, which the program does not say")),
-            "J012" => Some(("cut.feed_mm_per_min", "500", "feed, mm/min, which the program does not say")),
+            "J012" => Some(("cut.feed_mm_per_min", "500", "feed, which the program does not say")),
             _ => None,
         };
         let passes = match passes {
@@ -544,7 +550,7 @@ impl<'a> Drafting<'a> {
 
     /// The contours that the job so far is about.
     fn passes(&self, only: Option<&ContourNote>) -> Result<Vec<Pass>, Failure> {
-        let mut text = text::bare(&stand_ins(&self.entries));
+        let mut text = text::bare(&stand_ins(&self.entries), self.post.unit.told());
         if let Some(depth) = self.given.get("cut.axial_depth_mm") {
             text = text::with_key(&text, "cut", &format!("axial_depth_mm = {depth}"));
         }

@@ -13,6 +13,7 @@
 use truepath_core::gcode::{Criteria, Found, Role};
 use truepath_core::geometry::{Block, Contour, FACET_TURN_LIMIT, Point, Side};
 use truepath_core::units::Offset;
+use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 
 use crate::drawn::turns_left;
@@ -66,7 +67,7 @@ pub(super) fn side(found: &Found, survey: &Survey, post: &Post, (criteria, known
     let leads = leads.map(|(side, why)| Shown { side, why: why.to_owned(), line: Some(lines.first) });
     let rough = by_rough(found, survey, criteria);
     let radius = Offset::from_nm(criteria.diameter.nm() / 2);
-    let tight = if known { by_tight(contour, radius) } else { None };
+    let tight = if known { by_tight(contour, radius, post.unit.told()) } else { None };
     let signs = [tight.clone(), leads, rough];
     let mut seen = signs.iter().flatten();
     let first = seen.next();
@@ -86,7 +87,7 @@ fn arcs(contour: &[Block]) -> impl Iterator<Item = (&Block, Offset, Side)> {
 }
 
 /// An arc that turns round one side more tightly than the cutter: there can be no wall on it.
-fn by_tight(contour: &[Block], radius: Offset) -> Option<Shown> {
+fn by_tight(contour: &[Block], radius: Offset, unit: Unit) -> Option<Shown> {
     let tight = |side: Side| {
         let least = radius - Offset::from_nm(radius.nm() / 100);
         arcs(contour).find(|(_, r, within)| *within == side && *r < least)
@@ -96,7 +97,8 @@ fn by_tight(contour: &[Block], radius: Offset) -> Option<Shown> {
         (None, Some(arc)) => (Side::Left, arc),
         _ => return None,
     };
-    let why = format!("round an arc of radius {} mm the cutter can leave no wall on the other side", mm(r));
+    let (radius, name) = (unit.of(mm(r)), unit.name());
+    let why = format!("round an arc of radius {radius} {name} the cutter can leave no wall on the other side");
     Some(Shown { side, why, line: Some(block.line) })
 }
 

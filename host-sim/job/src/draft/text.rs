@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use truepath_ground::decimal::Decimal;
-use truepath_ground::document::in_inches;
 use truepath_ground::length::Unit;
+use truepath_ground::length::in_inches;
 
 use super::contents::{Draft, Entry, Origin};
 
@@ -107,8 +107,8 @@ fn line(out: &mut String, text: &str, comment: &str) {
     };
 }
 
-/// The keys of a list alone.
-pub(super) fn bare(entries: &[Entry]) -> String {
+/// The keys of a list alone, in the unit of the program, so that what is wrong with one is said in it.
+pub(super) fn bare(entries: &[Entry], unit: Unit) -> String {
     let mut out = String::new();
     for table in TABLES {
         let inside: Vec<&Entry> = entries.iter().filter(|entry| entry.place().0 == table).collect();
@@ -117,7 +117,8 @@ pub(super) fn bare(entries: &[Entry]) -> String {
         }
         for entry in inside {
             if !matches!(entry.origin, Origin::Left | Origin::Open) {
-                let _ = writeln!(out, "{} = {}", entry.place().1, entry.value);
+                let (key, value) = entry.in_unit(unit);
+                let _ = writeln!(out, "{key} = {value}");
             }
         }
     }

@@ -6,6 +6,7 @@ use std::ops::Range;
 use truepath_core::gcode::{Found, LineRange, Role};
 use truepath_ground::codes::J008;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::length::Unit;
 
 use super::listing::{CONTOUR, listed, rows};
 use super::region::{Origin, Region};
@@ -14,10 +15,15 @@ use crate::codes::{N001, N002, N010, N011};
 use crate::job::{FeatureRole, JobFile};
 
 /// The feature named by the user, or the only one that can be meant.
-pub(super) fn chosen<'r>(job: &JobFile, regions: &'r [Region], survey: &Survey) -> Result<&'r Region, Failure> {
+pub(super) fn chosen<'r>(
+    job: &JobFile,
+    program: &Source,
+    regions: &'r [Region],
+    survey: &Survey,
+) -> Result<&'r Region, Failure> {
     let region = match &job.which.feature {
         Some(id) => named(regions, id)?,
-        None => only(job, regions, survey)?,
+        None => only(job, program, regions, survey)?,
     };
     checked(job, region)
 }
@@ -25,6 +31,7 @@ pub(super) fn chosen<'r>(job: &JobFile, regions: &'r [Region], survey: &Survey) 
 /// The features that the job's cutter can finish, when none is named.
 pub(super) fn candidates<'r>(
     job: &JobFile,
+    program: &Source,
     regions: &'r [Region],
     survey: &Survey,
 ) -> Result<Vec<&'r Region>, Failure> {
@@ -32,7 +39,7 @@ pub(super) fn candidates<'r>(
     let cutters: BTreeSet<Option<u32>> = finishing.iter().map(|r| tool(r, survey)).collect();
     let cutter = job.numbers.tool.number;
     if cutter.is_none() && cutters.len() > 1 {
-        return only(job, regions, survey).map(|region| vec![region]);
+        return only(job, program, regions, survey).map(|region| vec![region]);
     }
     let fits = |r: &&Region| cutters.len() == 1 || tool(r, survey).is_none_or(|t| Some(t) == cutter);
     let fitting: Vec<_> = finishing.into_iter().filter(fits).collect();
@@ -75,7 +82,7 @@ fn named<'r>(regions: &'r [Region], id: &str) -> Result<&'r Region, Failure> {
     Err(InputError::new(N002, format!("there is no feature \"{id}\""), expected, help).into())
 }
 
-fn only<'r>(job: &JobFile, regions: &'r [Region], survey: &Survey) -> Result<&'r Region, Failure> {
+fn only<'r>(job: &JobFile, program: &Source, regions: &'r [Region], survey: &Survey) -> Result<&'r Region, Failure> {
     if let [only] = regions {
         return Ok(only);
     }
@@ -101,7 +108,7 @@ fn only<'r>(job: &JobFile, regions: &'r [Region], survey: &Survey) -> Result<&'r
                     runs.len()
                 );
             }
-            Err(N001.error(found, "").into())
+            Err(N001.error(found, "").told_in(Unit::at(program.bytes(), program.bytes().len())).into())
         }
     }
 }
@@ -130,14 +137,15 @@ pub(super) fn ambiguous(
     (runs, count, allowance_mm): (&[Found], u32, f64),
     doubt: Option<&str>,
 ) -> Failure {
+    let unit = Unit::at(program.bytes(), program.bytes().len());
     let table = rows(runs, allowance_mm);
     let walls = table.iter().filter(|r| r.role == "finish");
     let others = table.iter().filter(|r| r.role != "finish");
     let rest = match others.clone().count() {
         0 => String::new(),
-        n => format!("\nbesides {n} other runs:{}", listed(others)),
+        n => format!("\nbesides {n} other runs:{}", listed(others, unit)),
     };
-    let found = format!("{count} finishing contours in {}, one is needed:{}{rest}", region.name(), listed(walls));
+    let found = format!("{count} finishing contours in {}, one is needed:{}{rest}", region.name(), listed(walls, unit));
     let help = doubt.unwrap_or("name one: --feature contour-N, as it stands at the end of its line; or [[feature]] with id and blocks (or lines) in the job, or (TRUEPATH BEGIN id) … (TRUEPATH END) around it in the program; a pocket and its island are two features");
     if region.origin != Origin::Search {
         return region.error(InputError::new(N010, found, "", help)).into();

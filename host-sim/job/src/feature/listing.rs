@@ -144,9 +144,9 @@ impl Row {
 const MOST_ROWS: usize = 20;
 
 /// A list inside an error.
-pub(super) fn listed<'r>(rows: impl Iterator<Item = &'r Row>) -> String {
+pub(super) fn listed<'r>(rows: impl Iterator<Item = &'r Row>, unit: Unit) -> String {
     let name = |row: &Row| row.contour.map_or_else(String::new, |n| format!("  {CONTOUR}{n}"));
-    let all: Vec<String> = rows.map(|row| format!("\n  {}{}", row.short(Unit::Millimetre), name(row))).collect();
+    let all: Vec<String> = rows.map(|row| format!("\n  {}{}", row.short(unit), name(row))).collect();
     let mut text = all.iter().take(MOST_ROWS).cloned().collect::<String>();
     if all.len() > MOST_ROWS {
         text += &format!("\n  and {} more", all.len() - MOST_ROWS);

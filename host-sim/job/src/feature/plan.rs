@@ -5,6 +5,7 @@ use truepath_core::geometry::{Block, Side};
 use truepath_core::job::Part;
 use truepath_core::units::{Offset, Position};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::length::Said;
 use truepath_ground::units::mm;
 
 use super::choice::{ambiguous, candidates, chosen};
@@ -57,7 +58,7 @@ pub struct Plan {
     /// The runs that were looked at.
     pub rows: Vec<Row>,
     /// What deserves a look.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Said>,
 }
 
 /// Finds the feature; `None` when job and program name none and the program has one run of cutting moves at most,
@@ -67,7 +68,7 @@ pub struct Plan {
 /// What is wrong with the program, its markers or the features of the job, and what is ambiguous.
 pub fn plan(job: &JobFile, program: &Source) -> Result<Option<Plan>, Failure> {
     let Some(search) = Search::of(job, program)? else { return Ok(None) };
-    let region = chosen(job, &search.regions, &search.survey)?;
+    let region = chosen(job, program, &search.regions, &search.survey)?;
     let sorted = search.sorted(job, region)?;
     let contour = match (sorted.contours, contour_named(job)) {
         (count, Some(named)) if region.origin == Origin::Search && named <= count => named,
@@ -91,7 +92,7 @@ pub fn plans(job: &JobFile, program: &Source) -> Result<Vec<Plan>, Failure> {
     }
     let Some(search) = Search::of(job, program)? else { return Ok(Vec::new()) };
     let mut plans = Vec::new();
-    for region in candidates(job, &search.regions, &search.survey)? {
+    for region in candidates(job, program, &search.regions, &search.survey)? {
         let sorted = search.sorted(job, region)?;
         if sorted.contours > 1 {
             let doubt = doubt(&sorted.runs, sorted.contours, &search.survey, sorted.allowance);
@@ -278,7 +279,7 @@ fn why(region: &Region, runs: &[Found], tool: Option<u32>, (of, contours): (u32,
 }
 
 /// Roughing that leaves something else than the job says.
-fn plan_warnings(runs: &[Found], of: u32, allowance: Offset) -> Vec<String> {
+fn plan_warnings(runs: &[Found], of: u32, allowance: Offset) -> Vec<Said> {
     let finish =
         |index: usize| runs.get(index).is_some_and(|f| matches!(f.role, Role::Finish { contour, .. } if contour == of));
     let gaps = runs.iter().filter_map(|f| match f.role {
@@ -290,13 +291,16 @@ fn plan_warnings(runs: &[Found], of: u32, allowance: Offset) -> Vec<String> {
     if off <= Offset::from_um(20).max(Offset::from_nm(allowance.nm() / 20)) {
         return Vec::new();
     }
-    vec![format!(
-        "the pass before the finishing one (lines {}-{}) leaves {:.4} mm, the job says allowance_mm = {}",
-        lines.first,
-        lines.last,
-        mm(gap),
-        mm(allowance)
-    )]
+    vec![Said::of(|unit| {
+        format!(
+            "the pass before the finishing one (lines {}-{}) leaves {:.4} {}, the job says allowance_mm = {}",
+            lines.first,
+            lines.last,
+            unit.of(mm(gap)),
+            unit.name(),
+            mm(allowance)
+        )
+    })]
 }
 
 impl Plan {

@@ -120,14 +120,14 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
     let (correct, writing) = correct(&source, root.section("correct")?.as_ref(), depth)?;
     let feed = feed(root.section("feed")?.as_ref())?;
     let (plan, plan_cutters) = plan(root.section("plan")?.as_ref(), &tool)?;
-    let part = part(&source, root.section("part")?.as_ref())?;
+    let part = part(root.section("part")?.as_ref())?;
     let mut store = store(&source, root.section("store")?.as_ref(), folder)?;
     if store.names.material.is_none() {
         let of_force = root.section("force")?.map(|section| section.text("material")).transpose()?.flatten();
         store.names.material = of_force.map(|(name, _)| name.to_owned());
     }
     root.close()?;
-    let program = path;
+    let (program, unit) = (path, root.unit());
     let Stock { allowance, surface, probe: stock_probe, roughing } = stock;
     let [surface, stock_probe] = [surface, stock_probe].map(|name| name.map(|name| folder.join(name)));
     drop(root);
@@ -174,6 +174,7 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
         probe_control: open.probe_control(stated_dialect),
         signer: None,
         force_data: false,
+        unit,
         spans: spans.into_inner(),
         source: source.clone(),
     })

@@ -6,9 +6,10 @@
 use truepath_core::units::Offset;
 use truepath_ground::codes::C001;
 use truepath_ground::decimal::Decimal;
-use truepath_ground::diagnostics::{InputError, Source};
+use truepath_ground::diagnostics::InputError;
 use truepath_ground::document::{Section, Value};
 use truepath_ground::limits::Limits;
+use truepath_ground::units::mm;
 
 /// Longest text, characters.
 const LONGEST: usize = 100;
@@ -99,7 +100,7 @@ impl PartFlags {
                 let half = Decimal::length(text).filter(|d| HALF_WIDTH.admits(*d)).map(Decimal::as_mm);
                 let half = half.ok_or_else(|| {
                     let found = format!("--tolerance on the command line is {text:?}");
-                    let expected = format!("half the width of the tolerance, {}", HALF_WIDTH.phrase());
+                    let expected = format!("half the width of the tolerance, {}", HALF_WIDTH.phrase_in_both());
                     InputError::new(
                         C001,
                         found,
@@ -155,7 +156,7 @@ const fn is_joiner(c: char) -> bool {
 }
 
 /// What the table says.
-pub(super) fn part(source: &Source, section: Option<&Section<'_>>) -> Result<PartTable, InputError> {
+pub(super) fn part(section: Option<&Section<'_>>) -> Result<PartTable, InputError> {
     let Some(section) = section else { return Ok(PartTable::default()) };
     let text = |key| line(section, key);
     let length = |key, limits| Ok::<_, InputError>(section.number(key, limits)?.map(Decimal::as_mm));
@@ -169,7 +170,7 @@ pub(super) fn part(source: &Source, section: Option<&Section<'_>>) -> Result<Par
     };
     let table = PartTable {
         names,
-        tolerance: tolerance(source, section)?,
+        tolerance: tolerance(section)?,
         uncertainty: length("uncertainty_mm", Limits::within("0.00001", "1", "mm"))?,
         reach: length("reach_mm", Limits::within("0.1", "1000", "mm"))?,
         reach_height: length("reach_height_mm", Limits::within("0.01", "1000", "mm"))?,
@@ -180,7 +181,7 @@ pub(super) fn part(source: &Source, section: Option<&Section<'_>>) -> Result<Par
 }
 
 /// A half width, or both limits.
-fn tolerance(source: &Source, section: &Section<'_>) -> Result<Option<Tolerance>, InputError> {
+fn tolerance(section: &Section<'_>) -> Result<Option<Tolerance>, InputError> {
     let limit = |value: &Value<'_>| section.number_in(value, LIMIT).map(Decimal::as_mm);
     let half = section.number("tolerance_mm", HALF_WIDTH)?.map(Decimal::as_mm);
     match (half, section.value("lower_mm"), section.value("upper_mm")) {
@@ -190,12 +191,16 @@ fn tolerance(source: &Source, section: &Section<'_>) -> Result<Option<Tolerance>
             let help = "remove tolerance_mm for limits of your own, or remove the limits";
             Err(section.contradiction(&value, &found, "a half width or two limits", help))
         }
-        (None, Some(_), None) => Err(section.missing("upper_mm", &format!("a number, {}", LIMIT.phrase()))),
-        (None, None, Some(_)) => Err(section.missing("lower_mm", &format!("a number, {}", LIMIT.phrase()))),
+        (None, Some(low), None) => {
+            Err(section.missing("upper_mm", &format!("a number, {}", LIMIT.phrase_in(low.unit()))))
+        }
+        (None, None, Some(high)) => {
+            Err(section.missing("lower_mm", &format!("a number, {}", LIMIT.phrase_in(high.unit()))))
+        }
         (None, Some(low), Some(high)) => {
             let (lower, upper) = (limit(&low)?, limit(&high)?);
             if upper <= lower {
-                let expected = format!("above part.lower_mm, {}", source.excerpt(low.span));
+                let expected = format!("above part.lower_mm, {} mm", mm(lower));
                 let help = "upper_mm is the limit of material left (positive), lower_mm that of too deep a cut";
                 return Err(section.out_of_range(&high, &expected, help));
             }

@@ -246,7 +246,7 @@ fn work_offset(
     if !matches!(format, None | Some(Format::Columns | Format::Grbl)) {
         let found = "probe.work_offset_mm is given for a format in work coordinates";
         let help = "remove it; only \"grbl\" and columns in machine coordinates need it";
-        return Err(InputError::new(J008, found, "a format in machine coordinates", help).at(source, value.span));
+        return Err(section.contradiction(&value, found, "a format in machine coordinates", help));
     }
     let expected = "three lengths, -10000 to 10000 mm";
     let help = "write work_offset_mm = [x, y, z], the machine position of the work zero";

@@ -50,7 +50,9 @@ pub(super) fn stock(section: &Section<'_>, diameter: Offset) -> Result<Stock, In
     }
     let Some(value) = section.value("allowance_mm") else {
         let Some((name, place)) = surface else {
-            return Err(section.missing("allowance_mm", &format!("a number, {}, or surface", limits.phrase())));
+            return Err(
+                section.missing("allowance_mm", &format!("a number, {}, or surface", limits.phrase_in(section.unit())))
+            );
         };
         if name.is_empty() {
             let expected = "the file name of a table with the columns x_mm and y_mm";

@@ -114,6 +114,7 @@ pub(super) fn tool(
             let help = format!("add {other}, or remove {there}");
             let found = format!("tool.{there} is given without tool.{other}");
             return Err(InputError::new(J008, found, "both or neither: the cutter's own compliance needs both", help)
+                .with_keys_in(section.unit())
                 .at(source, place));
         }
     };
@@ -187,9 +188,8 @@ pub(super) fn reach(
     match (tool.cantilever, section.value("stickout_mm")) {
         (Some(c), Some(value)) if c.length < cut.axial_depth => {
             let expected = format!("at least cut.axial_depth_mm, {} mm", mm(cut.axial_depth));
-            let found = format!("tool.stickout_mm is {}", source.excerpt(value.span.clone()));
-            Err(InputError::new(J008, found, expected, "measure from the collet to the cutter's tip")
-                .at(source, value.span))
+            let found = format!("{} is {}", value.path, source.excerpt(value.span.clone()));
+            Err(section.contradiction(&value, &found, &expected, "measure from the collet to the cutter's tip"))
         }
         _ => Ok(()),
     }

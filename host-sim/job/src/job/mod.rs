@@ -30,6 +30,7 @@ use truepath_core::units::Offset;
 use truepath_ground::codes::J004;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::files;
+use truepath_ground::length::Unit;
 
 use crate::codes::{J001, J009};
 use crate::post::ToolNote;
@@ -123,6 +124,8 @@ pub struct JobFile {
     pub signer: Option<Signer>,
     /// Whether points are taken although they do not fit the job; only the command line says it.
     pub force_data: bool,
+    /// The unit of its keys.
+    pub unit: Unit,
     source: Source,
     spans: truepath_ground::document::Spans,
 }

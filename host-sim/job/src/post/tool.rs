@@ -261,6 +261,9 @@ fn diameter(tokens: &[Token], is_mill: &dyn Fn(&Token) -> bool, numbered: bool) 
             let labelled = at.checked_sub(1).and_then(|b| tokens.get(b)).is_some_and(|b| {
                 b.is(&["T", "H", "D", "L", "TOOL", "Z", "R", "CR", "NO", "NR", "OP", "REV"]) || b.is_sign("-#=")
             });
+            // `T4 - 3/8 EM`: behind a number the dash is one between words.
+            let parted = at.checked_sub(2).and_then(|b| tokens.get(b)).is_some_and(|b| b.number().is_some());
+            let labelled = labelled && !(parted && tokens.get(at - 1).is_some_and(|b| b.is_sign("-")));
             let counted = tokens.get(at + 1).is_some_and(|next| next.is(&TEETH) || next.is_sign("="));
             t.number().filter(|_| !labelled && !counted)
         };
@@ -339,6 +342,7 @@ mod tests {
             ("N20 T=\"FRAESER_D10\" D1", flat(None, 10.0, None)),
             ("M6 T1 (8mm Fraeser)", flat(Some(1), 8.0, None)),
             ("G20\n(1/2\" 4FL EM)", flat(None, 12.7, Some(4))),
+            ("G20\n(T4 - 3/8 EM 4 FLUTE CARBIDE)", flat(Some(4), 9.525, Some(4))),
             ("(3/8 ENDMILL, 3 FLUTE)\nG20", flat(None, 9.525, Some(3))),
             ("(T4 D=6. CR=3. - ZMIN=-2. - ball end mill)", Some((Some(4), 6.0, None, Shape::Ball))),
             ("(T6 D=5. CR=0. TAPER=118deg - ZMIN=-14. - drill)", Some((Some(6), 5.0, None, Shape::Other))),

@@ -33,8 +33,10 @@ pub struct Inputs<'a> {
 impl Inputs<'_> {
     /// The failure for an error of the core.
     pub fn refused(&self, error: &JobError) -> Failure {
-        let at_job = |e: InputError, key: &str| Failure::from(e.at(self.job.source(), self.job.span(key)));
-        let at_line = |e: InputError, line: u32| Failure::from(e.at(self.program, self.program.span_at(line, 1, 1)));
+        let said = |e: InputError| e.told_in(self.unit).with_keys_in(self.job.unit);
+        let at_job = |e: InputError, key: &str| Failure::from(said(e).at(self.job.source(), self.job.span(key)));
+        let at_line =
+            |e: InputError, line: u32| Failure::from(said(e).at(self.program, self.program.span_at(line, 1, 1)));
         match *error {
             JobError::Program(error) => InputError::of_program(self.program, &error).into(),
             JobError::NoFeed { line } => at_line(of_job(error), line),
@@ -43,7 +45,7 @@ impl Inputs<'_> {
                 self.probe.map_or_else(|| Failure::Internal(error.to_string()), |file| of_probe(file, &error).into())
             }
             JobError::OffTheWall { line, .. } | JobError::NoContact { line, .. } => {
-                let error = of_contacts(error, self.job, self.unit);
+                let error = of_contacts(error, self.job, self.unit).with_keys_in(self.job.unit);
                 match self.probe {
                     Some(file) => error.at(file, line_span(file, line)).into(),
                     None => error.into(),
@@ -55,11 +57,13 @@ impl Inputs<'_> {
             JobError::ToolsDiffer { .. } => at_job(of_job(error), "tool.number"),
             JobError::NoTool => at_job(of_job(error), "tool"),
             JobError::Flutes => at_job(of_job(error), "cut.axial_depth_mm"),
-            JobError::Unfit { .. } => at_job(of_correction(error, self.unit), "probe.ball_diameter_mm"),
+            JobError::Unfit { .. } => at_job(of_correction(error, self.job, self.unit), "probe.ball_diameter_mm"),
             JobError::BeyondClamp { .. } | JobError::NoFeedWindow { .. } => {
-                at_job(of_correction(error, self.unit), "correct.clamp_mm")
+                at_job(of_correction(error, self.job, self.unit), "correct.clamp_mm")
             }
-            JobError::TooManyNodes { .. } | JobError::Image(_) => at_job(of_correction(error, self.unit), "correct"),
+            JobError::TooManyNodes { .. } | JobError::Image(_) => {
+                at_job(of_correction(error, self.job, self.unit), "correct")
+            }
             JobError::Range { .. } | JobError::NoProbe => at_job(of_job(error), ""),
             JobError::Compact | JobError::Full { .. } => Failure::Internal(error.to_string()),
         }
@@ -115,8 +119,9 @@ fn of_job(error: &JobError) -> InputError {
 }
 
 /// A correction that must not be made.
-fn of_correction(error: &JobError, unit: Unit) -> InputError {
+fn of_correction(error: &JobError, job: &JobFile, unit: Unit) -> InputError {
     let (code, name) = (error.code(), unit.name());
+    let limit = |clamp| format!("{} = {}", job.unit.keys("clamp_mm"), job.unit.of(mm(clamp)));
     match *error {
         JobError::Unfit { s, measured, fitting, .. } => InputError::of_core(
             code,
@@ -132,24 +137,24 @@ fn of_correction(error: &JobError, unit: Unit) -> InputError {
         JobError::BeyondClamp { reach, clamp, at } => InputError::of_core(
             code,
             format!(
-                "the correction reaches {:.3} {name} at X{:.3} Y{:.3}, beyond clamp_mm = {}",
+                "the correction reaches {:.3} {name} at X{:.3} Y{:.3}, beyond {}",
                 unit.of(mm(reach)),
                 unit.of(at.x.nm() as f64 / 1e6),
                 unit.of(at.y.nm() as f64 / 1e6),
-                mm(clamp)
+                limit(clamp)
             ),
             "a correction inside the clamp",
-            clamp_help(reach),
+            clamp_help(reach, job.unit),
         ),
         JobError::NoFeedWindow { reach, clamp } => InputError::of_core(
             code,
             format!(
-                "at 110 % of the programmed feed the correction reaches {:.3} {name}, beyond clamp_mm = {}",
+                "at 110 % of the programmed feed the correction reaches {:.3} {name}, beyond {}",
                 unit.of(mm(reach)),
-                mm(clamp)
+                limit(clamp)
             ),
             "a correction that leaves room for a feed override of 110 %",
-            clamp_help(reach),
+            clamp_help(reach, job.unit),
         ),
         JobError::TooManyNodes { limit, .. } => InputError::of_core(
             code,
@@ -164,15 +169,17 @@ fn of_correction(error: &JobError, unit: Unit) -> InputError {
     }
 }
 
-/// What to do about a correction beyond the clamp: the peak and a tenth of it, rounded up to a hundredth, where that may
-/// be a deflection at all.
-fn clamp_help(peak: Offset) -> String {
-    let proposal = (mm(peak) * 110.0).ceil() / 100.0;
-    if proposal > mm(Offset::from_nm(MAX_CLAMP_NM)) {
+/// What to do about a correction beyond the clamp: the peak and a tenth of it, rounded up to a hundredth of a millimetre or half a
+/// thousandth of an inch, where that may be a deflection at all.
+fn clamp_help(peak: Offset, unit: Unit) -> String {
+    let steps = if unit == Unit::Inch { 2000.0 } else { 100.0 };
+    let proposal = (unit.said(mm(peak)) * 1.1 * steps).ceil() / steps;
+    if unit.in_mm(proposal) > mm(Offset::from_nm(MAX_CLAMP_NM)) {
         return "no cutter deflects that much: check the side of the wall, the cutter's diameter and the probe file"
             .to_owned();
     }
     format!(
-        "if a correction that large is meant, set clamp_mm = {proposal} in [correct]; otherwise check the probe file and the cut"
+        "if a correction that large is meant, set {} = {proposal} in [correct]; otherwise check the probe file and the cut",
+        unit.keys("clamp_mm")
     )
 }

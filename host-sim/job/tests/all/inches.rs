@@ -35,9 +35,37 @@ fn a_job_in_inches_is_the_same_job() {
 }
 
 #[test]
-fn a_length_beyond_its_limits_is_told_in_both_units() {
-    let said = refused(&INCHES.replace("diameter_in = 0.5", "diameter_in = 12.7"));
-    assert!(said.contains("tool.diameter_in is 12.7, which is 322.58 mm") && said.contains("0.1 to 100 mm"), "{said}");
+fn a_length_in_inches_beyond_its_limits_is_told_them_in_inches() {
+    for (found, put, words) in [
+        ("\ndiameter_in = 0.5", "\ndiameter_in = 12.7", "tool.diameter_in is 12.7; expected 0.00394 to 3.93 in"),
+        (
+            "\ndiameter_in = 0.5",
+            "\ndiameter_in = 12.7",
+            "check the value; if it is in millimetres, write diameter_mm = 12.7",
+        ),
+        ("feed_in_per_min = 20", "feed_in_per_min = 0", "expected 0.00394 to 3937 in/min"),
+        ("axial_depth_in = 0.25", "axial_depth_in = \"deep\"", "a number, above 0, up to 7.87 in"),
+        ("diameter_in = 0.4998", "diameter_in = 0.6", "a diameter within 10 % of diameter_in, 0.500 in"),
+        ("stickout_in = 2", "stickout_in = 0.2", "at least cut.axial_depth_in, 0.250 in"),
+        ("allowance_in = 0.02", "allowance_in = 0.5", "less than the cutter's diameter, 0.500 in"),
+        ("allowance_in = 0.02", "allowence_in = 0.02", "did you mean allowance_in where allowence_in is written?"),
+        ("\nclamp_in = 0.01", "\nclam_in = 0.01", "did you mean clamp_in?"),
+        ("\ndiameter_in = 0.5", "", "expected a number, 0.00394 to 3.93 in"),
+        ("\ndiameter_in = 0.5", "", "add diameter_in under [tool]"),
+        ("band_in = [0.05, 0.2]", "band_in = [0.05, 0.3]", "within 0.000 to 0.250 in"),
+        ("work_offset_in = [1, -10, 0]", "work_offset_in = [1, -500, 0]", "three lengths, -393.701 to 393.701 in"),
+        ("tolerance_in = 0.001", "tolerance_in = 20", "expected 0.000004 to 0.393 in"),
+        ("tolerance_in = 0.001", "lower_in = 0.001\nupper_in = -0.001", "above part.lower_in, 0.00100 in"),
+        ("tolerance_in = 0.001", "lower_in = 0.001", "part.upper_in is missing; expected a number, -0.393 to 0.393 in"),
+    ] {
+        assert!(INCHES.contains(found), "{found}");
+        let said = refused(&INCHES.replace(found, put));
+        assert!(said.contains(words), "{words}\n{said}");
+        let metric = said.replace("if it is in millimetres, write diameter_mm", "").replace("[cut]", "");
+        assert!(!metric.contains("_mm") && !metric.contains(" mm"), "{said}");
+    }
+    let said = refused(&METRIC.replace("\ndiameter_mm = 12.7", "\ndiameter_mm = 322.58"));
+    assert!(said.contains("tool.diameter_mm is 322.58; expected 0.1 to 100 mm"), "{said}");
 }
 
 #[test]

@@ -8,7 +8,8 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 use truepath_ground::diagnostics::Source;
-use truepath_ground::document::{Asked, Kind, asked_during, in_inches};
+use truepath_ground::document::{Asked, Kind, asked_during};
+use truepath_ground::length::in_inches;
 use truepath_job::job::JobFile;
 
 /// Tables that do not exclude each other, and those that do in the second and third job.

@@ -72,7 +72,7 @@ fn a_stray_point_is_set_aside_with_a_reason_and_the_rest_is_used() {
     let remarks = measurement.remarks(&file);
     assert!(remarks[0].starts_with("probe.txt:5: point 5 set aside: "), "{}", remarks[0]);
     assert_eq!(
-        remarks[1],
+        &*remarks[1],
         "probe.txt:6: point 6 set aside: 35.000 mm above the cutter's tip, outside the engaged depth"
     );
 }

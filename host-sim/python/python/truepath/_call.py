@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 import numpy as np
 import numpy.typing as npt
 
+from . import _truepath
 from ._job import AnyPath, Job
 
 if TYPE_CHECKING:
@@ -67,8 +68,14 @@ class Call:
         """A place for a folder."""
         return os.path.join(self._folder.name, name)
 
-    def touches(self, touches: Touches) -> None:
+    def measured(self, touches: Optional[Touches], dimensions: Optional[AnyPath]) -> None:
         """Adds what was measured."""
+        if dimensions is not None:
+            self.file("--dimensions", dimensions, "dimensions.toml")
+        if touches is not None:
+            self._touches(touches)
+
+    def _touches(self, touches: Touches) -> None:
         if isinstance(touches, (str, os.PathLike)):
             self.file("--probe", touches, "probe.txt")
             return
@@ -86,6 +93,16 @@ class Call:
             "progress": self._progress,
         }
         return command([*self.words, "--", self.job.path], given)
+
+    def unkept(self, store: Optional[AnyPath], by: str) -> list[str]:
+        """Puts what was written into a store, if one is given; what there is to warn of."""
+        if store is None:
+            return []
+        try:
+            _truepath.keep(self.job.path, os.fspath(store), self.output, by)
+        except _truepath.TruepathError as error:
+            return [f"the part is not in the store: {error}. Save it, and truepath store import takes its folder later"]
+        return []
 
     @property
     def _hidden(self) -> list[str]:

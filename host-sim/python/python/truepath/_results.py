@@ -8,7 +8,7 @@ import json
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Optional
+from typing import Any, Optional, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -206,8 +206,78 @@ class Identification:
         return f"Identification({len(self.s_mm)} points: {values})"
 
 
+_OTHERS = {
+    "Correction": "those of a correction: read them with Correction.read",
+    "Plan": "those of a plan: read them with Plan.read, whose summary has the passes and planned_program the program",
+    "Trace": "those of truepath simulate: take trace.csv of it, or call simulate",
+}
+"""What is said of a folder that something else reads."""
+
+
+def _kind(files: Mapping[str, bytes]) -> str:
+    """The class whose files these are; an empty text for none."""
+    summary = json.loads(files["summary.json"])
+    plans = [summary, *(summary.get("contours") or [])]
+    names = {name.rsplit("/", 1)[-1] for name in files}
+    if "plan-history.json" in names or any("choices" in plan for plan in plans):
+        return "Plan"
+    if "correction.csv" in names:
+        return "Correction"
+    return "Trace" if "trace.csv" in names else ""
+
+
+W = TypeVar("W", bound="_Written")
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Correction:
+class _Written:
+    """What a command wrote into a folder."""
+
+    summary: dict[str, Any]
+    """``summary.json`` of the command."""
+    files: dict[str, bytes]
+    """Every file that the command writes, by name: ``report.html``, ``difference.txt`` and others."""
+
+    @classmethod
+    def read(cls: type[W], folder: AnyPath) -> W:
+        """What the command or :meth:`save` wrote into a folder.
+
+        Raises:
+            FileNotFoundError: no folder, or none of a command.
+            ValueError: the folder of another command; the message says which, and what reads it.
+        """
+        files, own = files_in(folder), cls.__name__
+        if "summary.json" not in files:
+            raise FileNotFoundError(f"{os.fspath(folder)!r} holds no {own.lower()}: summary.json is missing")
+        found = _kind(files)
+        if found == own:
+            return cls._of(files)
+        said = _OTHERS.get(found, "of another command")
+        raise ValueError(f"{os.fspath(folder)!r} holds no {own.lower()}: its files are {said}")
+
+    @classmethod
+    def _of(cls: type[W], files: dict[str, bytes]) -> W:
+        return cls(summary=json.loads(files["summary.json"]), files=files)
+
+    def save(self, folder: AnyPath, *, force: bool = False) -> None:
+        """Writes every file into a folder, whole or not at all: what the command writes with ``-o``.
+
+        Args:
+            folder: a new or an empty folder.
+            force: replace the files of an earlier run in it.
+
+        Raises:
+            TruepathError: ``F003`` the folder is not empty, ``F002`` it cannot be written.
+        """
+        _truepath.save(os.fspath(folder), list(self.files.items()), force)
+
+    def _text(self, name: str) -> Optional[str]:
+        data = self.files.get(name)
+        return None if data is None else data.decode("utf-8", "surrogateescape")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Correction(_Written):
     """A correction of the next part, by :func:`correct` or :func:`learn`. All arrays are of length n."""
 
     s_mm: Array
@@ -228,22 +298,6 @@ class Correction:
     """One standard deviation of the error on the next part, mm."""
     contour: Names
     """The contour of every row; empty texts where only one was corrected."""
-    summary: dict[str, Any]
-    """``summary.json`` of the command."""
-    files: dict[str, bytes] = field(repr=False)
-    """Every file that the command writes, by name: ``report.html``, ``difference.txt`` and others."""
-
-    @classmethod
-    def read(cls, folder: AnyPath) -> Correction:
-        """What ``truepath correct``, ``truepath learn`` or :meth:`save` wrote into a folder.
-
-        Raises:
-            FileNotFoundError: no folder, or none of a correction.
-        """
-        files = files_in(folder)
-        if "summary.json" not in files:
-            raise FileNotFoundError(f"{os.fspath(folder)!r} holds no correction: summary.json is missing")
-        return cls._of(files)
 
     @classmethod
     def _of(cls, files: dict[str, bytes]) -> Correction:
@@ -265,26 +319,30 @@ class Correction:
     @property
     def corrected_program(self) -> Optional[str]:
         """The program to load at the machine; None where the coprocessor corrects."""
-        text = self.files.get("corrected.nc")
-        return None if text is None else text.decode("utf-8", "surrogateescape")
+        return self._text("corrected.nc")
 
     @property
     def image(self) -> Optional[bytes]:
         """The image for the coprocessor; None where the program is corrected. Of several contours each has its own in ``files``."""
         return self.files.get("correction.tpi")
 
-    def save(self, folder: AnyPath, *, force: bool = False) -> None:
-        """Writes every file into a folder, whole or not at all: what the command writes with ``-o``.
-
-        Args:
-            folder: a new or an empty folder.
-            force: replace the files of an earlier correction in it.
-
-        Raises:
-            TruepathError: ``F003`` the folder is not empty, ``F002`` it cannot be written.
-        """
-        _truepath.save(os.fspath(folder), list(self.files.items()), force)
-
     def __repr__(self) -> str:
         before, after = self.summary["max_error_before_mm"], self.summary["max_error_after_mm"]
         return f"Correction({len(self.s_mm)} places, largest error {before:.4f} -> {after:.4f} mm)"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Plan(_Written):
+    """Passes that hold a tolerance at every height, by :func:`plan`, or better ones by :func:`learn`.
+
+    ``summary`` has ``choices`` with time and wall, and the one ``recommended``; of several contours in ``contours``.
+    """
+
+    @property
+    def planned_program(self) -> Optional[str]:
+        """The program to load at the machine; None where none was written."""
+        return self._text("planned.nc")
+
+    def __repr__(self) -> str:
+        plans = self.summary.get("contours") or [self.summary]
+        return f"Plan({sum(len(plan.get('choices', ())) for plan in plans)} choices)"

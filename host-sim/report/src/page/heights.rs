@@ -32,7 +32,7 @@ pub(super) fn errors_at_heights(machine: &Loop, states: &[State], residual: &[Of
     let each = |i: usize| {
         let wall = walls.next_if(|(index, _)| **index == path.first() + i);
         let beside = residual.get(i).copied().unwrap_or_default();
-        wall.map_or([None; HEIGHTS], |(_, wall)| wall).map(|error| error.map_or(f64::NAN, |error| mm(error + beside)))
+        wall.map_or([None; HEIGHTS], |(_, wall)| wall).map(|wall| wall.map_or(f64::NAN, |wall| mm(wall.error + beside)))
     };
     kept.nodes().flat_map(each).collect()
 }

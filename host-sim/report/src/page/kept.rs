@@ -41,7 +41,7 @@ impl Kept {
     pub(super) fn note(&self) -> Option<String> {
         (self.every > 1).then(|| {
             format!(
-                "the report shows every {}th of {} samples along the contour; the tables have all",
+                "the report shows one in {} of {} samples along the contour; the tables have all",
                 self.every, self.count
             )
         })

@@ -6,7 +6,7 @@ use truepath_correction::correct::CorrectedPass;
 use truepath_correction::summary::CorrectSummary;
 use truepath_correction::surface::expected::Surfaces;
 use truepath_ground::diagnostics::Failure;
-use truepath_ground::length::{Said, Unit};
+use truepath_ground::length::{Remark, Said, Unit};
 use truepath_ground::units::float;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
@@ -89,7 +89,7 @@ pub(super) fn of_correction(
     page.warnings = page_warnings(
         pass,
         Some(&measurement.file),
-        done.summary.warnings.iter().cloned().chain(along.note).chain(left_out),
+        done.summary.warnings.iter().cloned().chain(along.note.into_iter().chain(left_out).map(Remark::from)),
     );
     if let Some(job) = &mut page.job {
         job.facts.extend(facts(pass, done, of));

@@ -3,7 +3,7 @@
 use truepath_correction::inspection;
 use truepath_correction::inspection::Judgement;
 use truepath_ground::diagnostics::Failure;
-use truepath_ground::length::{Said, Unit};
+use truepath_ground::length::{Remark, Said, Unit};
 use truepath_ground::units::mm;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
@@ -23,7 +23,7 @@ pub fn inspected(
     measurement: &Measurement,
     [in_mm, in_inches]: [&Judgement; 2],
     summary: &InspectSummary,
-    warnings: &[String],
+    warnings: &[Remark],
 ) -> Result<Page, Failure> {
     let mut page = of_pass(Kind::Inspect, "Inspection report:".to_owned(), pass);
     if let Some(name) = &summary.part.name {
@@ -85,7 +85,8 @@ pub fn inspected(
         statements: statements.collect(),
         coverage: summary.coverage.clone(),
     });
-    page.warnings = page_warnings(pass, Some(&measurement.file), warnings.iter().cloned().chain(notes).chain(left_out));
+    let notes = notes.into_iter().chain(left_out).map(Remark::from);
+    page.warnings = page_warnings(pass, Some(&measurement.file), warnings.iter().cloned().chain(notes));
     Ok(page)
 }
 

@@ -11,7 +11,7 @@ mod simulated;
 
 use std::path::Path as FilePath;
 
-use truepath_ground::length::Said;
+use truepath_ground::length::{Remark, Said};
 use truepath_job::pass::Pass;
 
 use crate::page::{JobFacts, Kind, Outcome, Outlines, Page, Program, subject};
@@ -41,12 +41,13 @@ fn file(name: &str) -> &FilePath {
 }
 
 /// Warnings as the page tells them: files without their folders, which are nobody's business who receives the page.
-fn page_warnings(pass: &Pass, probe: Option<&str>, warnings: impl Iterator<Item = String>) -> Vec<Said> {
+fn page_warnings(pass: &Pass, probe: Option<&str>, warnings: impl Iterator<Item = Remark>) -> Vec<Said> {
     let files = [Some(pass.program.name()), Some(pass.job.source().name()), probe];
     let folder = |name: &str| name.rfind(['/', '\\']).map(|end| name[..=end].to_owned());
     // A folder of one mark ("/") stands in other texts as well.
     let mut folders: Vec<String> = files.into_iter().flatten().filter_map(folder).filter(|f| f.len() > 1).collect();
     // The longest first: one may be the beginning or the end of another.
     folders.sort_unstable_by_key(|folder| std::cmp::Reverse(folder.len()));
-    warnings.map(|text| folders.iter().fold(text, |text, folder| text.replace(folder, "")).into()).collect()
+    let plain = |text: &str| folders.iter().fold(text.to_owned(), |text, folder| text.replace(folder, ""));
+    warnings.map(|said| said.map(plain).into()).collect()
 }

@@ -1,5 +1,6 @@
 //! The page of `simulate`: one pass, with who computed it.
 
+use truepath_ground::length::Remark;
 use truepath_job::pass::Pass;
 
 use super::{file, of_pass, page_warnings};
@@ -20,7 +21,7 @@ pub fn simulated(pass: &Pass, along: Along, summary: &SimulateSummary) -> Page {
     page.outlook = Some(Outlook { now: WallFigures::of(summary.max_error_mm, worst_mm), ..Outlook::default() });
     page.next = Some(after_simulation(file(pass.job.source().name())));
     page.results = figures(summary);
-    page.warnings = page_warnings(pass, None, summary.warnings.iter().cloned().chain(along.note));
+    page.warnings = page_warnings(pass, None, summary.warnings.iter().cloned().chain(along.note.map(Remark::from)));
     if let Some(job) = &mut page.job {
         job.facts.push(Fact::new("error shown", "mean over the engaged depth"));
     }

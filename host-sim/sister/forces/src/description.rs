@@ -36,6 +36,7 @@ use std::path::{Path, PathBuf};
 
 use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::document::{Section, Spans};
+use truepath_ground::length::Unit;
 use truepath_ground::limits::Limits;
 use truepath_ground::notation;
 
@@ -111,6 +112,8 @@ pub struct Description {
     pub recording: Recording,
     /// The cuts in their order.
     pub cuts: Vec<Described>,
+    /// The unit of its keys, in which people are told.
+    pub unit: Unit,
     /// The text, for errors.
     pub source: Source,
 }
@@ -228,13 +231,14 @@ impl Description {
             cuts.push(cut(&source, &section, common, &tool, folder)?);
         }
         root.close()?;
+        let unit = root.unit();
         drop(root);
         if cuts.iter().all(|c| !c.fitted) {
             let end = source.bytes().len();
             return Err(E009.error("there is no [[cut]] to fit", "two feeds at least").at(&source, end..end));
         }
         drop(table);
-        Ok(Self { recording, cuts, source: source.clone() })
+        Ok(Self { recording, cuts, unit, source: source.clone() })
     }
 }
 
@@ -302,19 +306,21 @@ fn cut(
     let incomplete = |key: &str, expected: &str| {
         let found = format!("{key} of a cut is missing");
         let help = format!("add {key} under [cutting] or [[cut]]");
-        InputError::new(E008, found, expected, help).at(source, place.clone())
+        InputError::new(E008, found, expected, help).with_keys_in(section.unit()).at(source, place.clone())
     };
-    let axial_depth_mm =
-        shared.axial.ok_or_else(|| incomplete("axial_depth_mm", &format!("a number, {}", AXIAL.phrase())))?;
+    let axial_depth_mm = shared
+        .axial
+        .ok_or_else(|| incomplete("axial_depth_mm", &format!("a number, {}", AXIAL.phrase_in(section.unit()))))?;
     let spindle_rpm = shared.rpm.ok_or_else(|| incomplete("spindle_rpm", &format!("a number, {}", SPEED.phrase())))?;
     let leaving = || {
-        let radial =
-            shared.radial.ok_or_else(|| incomplete("radial_depth_mm", &format!("a number, {}", RADIAL.phrase())))?;
+        let radial = shared
+            .radial
+            .ok_or_else(|| incomplete("radial_depth_mm", &format!("a number, {}", RADIAL.phrase_in(section.unit()))))?;
         if radial > tool.diameter_mm {
             let found = format!("the radial depth is {radial} mm");
             let error =
                 InputError::new(E008, found, format!("at most the diameter, {} mm", tool.diameter_mm), "correct it");
-            return Err(error.at(source, place.clone()));
+            return Err(error.told_in(section.unit()).at(source, place.clone()));
         }
         Ok((1.0 - radial / tool.radius_mm()).acos())
     };
@@ -326,7 +332,8 @@ fn cut(
         _ => {
             let help = "add milling = \"slot\", or milling = \"up\" or \"down\" with radial_depth_mm, or entry_deg below exit_deg";
             let error =
-                InputError::new(E008, "the engagement of a cut is missing or given twice", "one way to say it", help);
+                InputError::new(E008, "the engagement of a cut is missing or given twice", "one way to say it", help)
+                    .with_keys_in(section.unit());
             return Err(error.at(source, place));
         }
     };

@@ -1,6 +1,7 @@
 //! Why a pocket cannot be compensated.
 
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Unit;
 use truepath_job::job::JobFile;
 
 use crate::codes::{D001, D002, D003, D004, D005, D006};
@@ -47,8 +48,8 @@ pub enum PocketError {
 }
 
 impl PocketError {
-    /// As the user meets it, pointing into the job.
-    pub fn failure(&self, job: &JobFile) -> Failure {
+    /// As the user meets it, pointing into the job, said in a unit.
+    pub fn failure(&self, job: &JobFile, unit: Unit) -> Failure {
         let (row, found, expected, key) = match self {
             Self::NoCutter => (
                 D001,
@@ -84,7 +85,7 @@ impl PocketError {
                 "correct.clamp_mm",
             ),
         };
-        let error = row.error(found, expected);
+        let error = row.error(found, expected).told_in(unit);
         let span = job.span(key);
         if span.is_empty() {
             error.in_file(std::path::Path::new(job.source().name())).into()

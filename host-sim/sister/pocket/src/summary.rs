@@ -1,6 +1,7 @@
 //! `summary.json` of `truepath pocket`.
 
 use truepath_core::geometry::Side;
+use truepath_ground::length::{Remark, Unit};
 use truepath_ground::units::mm;
 use truepath_job::job::{Mode, PerSection, PocketTable};
 use truepath_job::pass::{Pass, milling_name};
@@ -38,6 +39,9 @@ pub struct CutterSummary {
 pub struct PocketSummary {
     /// Version of this file.
     pub version: u32,
+    /// The unit of the program, in which people are told.
+    #[serde(skip)]
+    pub unit: Unit,
     /// Wall or slot.
     pub mode: Mode,
     /// Climb or conventional, on the near wall.
@@ -73,7 +77,7 @@ pub struct PocketSummary {
     /// The corrected program against its original; null where nothing was shifted.
     pub program: Option<Difference>,
     /// What the user should know.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Remark>,
 }
 
 /// What there is to tell.
@@ -94,27 +98,33 @@ pub fn pocket_summary(
     machine: &Machine,
     made: &Told,
     program: Option<Difference>,
-    mut warnings: Vec<String>,
+    mut warnings: Vec<Remark>,
 ) -> PocketSummary {
     let judged = || made.rows.iter().filter(|row| row.kind != Kind::Sharp);
     let largest = |value: fn(&SectionRow) -> [f64; 2]| {
         judged().flat_map(value).filter(|v| v.is_finite()).fold(0.0, |m: f64, v| m.max(v.abs()))
     };
     for row in judged().filter(|row| !row.in_band_after) {
-        warnings.push(format!("{} is not within the band after: {}", row.section, row.reason));
+        let said = |unit: Unit| format!("{} is not within the band after: {}", row.section, unit.retold(&row.reason));
+        warnings.push(pass.unit().remark(said));
     }
     let sharp = made.rows.iter().filter(|row| row.kind == Kind::Sharp);
     let left = |row: &SectionRow| row.error_after_mm.abs().max(row.far_error_after_mm.unwrap_or(0.0).abs());
     let max_error_sharp_mm = sharp.map(left).fold(0.0, f64::max);
     if max_error_sharp_mm > mm(table.tolerance) {
-        warnings.push(format!(
-            "{max_error_sharp_mm:.4} mm remain at corners without an arc: give the path an arc there, however small"
-        ));
+        warnings.push(pass.unit().remark(|unit| {
+            let left = unit.of(max_error_sharp_mm);
+            format!(
+                "{left:.4} {} remain at corners without an arc: give the path an arc there, however small",
+                unit.name()
+            )
+        }));
     }
     let tool = &machine.tool;
     PocketSummary {
         max_error_sharp_mm,
         version: 1,
+        unit: pass.unit(),
         mode: table.mode,
         milling: milling_name(pass.core.setup.milling),
         near_wall: if pass.core.setup.wall == Side::Left { "left" } else { "right" },

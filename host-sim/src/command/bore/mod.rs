@@ -17,7 +17,7 @@ use truepath_bore::texture::{Cutoffs, texture};
 use truepath_bore::wanted::feed_for;
 use truepath_bore::{dependence, depth};
 use truepath_ground::diagnostics::Failure;
-use truepath_ground::length;
+use truepath_ground::length::{self, Typed, Unit};
 use truepath_ground::output::OutputFolder;
 
 use truepath_job::job::one_of;
@@ -40,17 +40,17 @@ const FEEDS: [(&str, FeedAt); 2] = [("centre", FeedAt::Centre), ("wall", FeedAt:
 #[command(allow_negative_numbers = true)]
 pub struct Options {
     /// Nominal radius of the hole: the path of the centre and the cutter's radius together, mm, or with its unit
-    /// (0.1in).
-    #[arg(long, value_name = "LENGTH", value_parser = length::flag)]
-    hole_radius: f64,
+    /// (0.1in), in which the figures are then said.
+    #[arg(long, value_name = "LENGTH")]
+    hole_radius: Typed,
     /// Radius of the cutter, mm, or with its unit (0.1in).
     #[arg(long, value_name = "LENGTH", value_parser = length::flag)]
     cutter_radius: f64,
     /// Teeth, equally pitched.
     #[arg(long, value_name = "N")]
     teeth: u32,
-    /// Feed; may be left out when a waviness is wanted.
-    #[arg(long, value_name = "MM_PER_MIN", required_unless_present = "wanted_waviness")]
+    /// Feed, mm/min, or with its unit (12in); may be left out when a waviness is wanted.
+    #[arg(long, value_name = "LENGTH_PER_MIN", value_parser = length::flag, required_unless_present = "wanted_waviness")]
     feed: Option<f64>,
     /// Whether the feed is that of the cutter's centre or of the wall.
     #[arg(long, value_parser = one_of(&FEEDS), default_value = "centre")]
@@ -114,6 +114,10 @@ enum Direction {
 }
 
 impl Options {
+    /// That in which figures are said.
+    fn unit(&self) -> Unit {
+        self.hole_radius.unit.unwrap_or_default()
+    }
     fn setup(&self) -> Setup {
         let rpm = match (self.direction, self.reverse) {
             (Some(Direction::Conventional), _) => self.rpm.abs(),
@@ -130,7 +134,7 @@ impl Options {
             phase_deg: self.tooth_phase,
         };
         Setup {
-            hole_mm: self.hole_radius,
+            hole_mm: self.hole_radius.mm,
             cutter,
             feed_mm_per_min: self.feed.unwrap_or(1.0),
             feed_at: self.feed_at,
@@ -144,7 +148,7 @@ impl Options {
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
     let summary = terminal.watch("milling the bore", |progress| run(options, progress))?;
     terminal.warn_all(&summary.warnings);
-    terminal.tell(&summary, || words(&summary))
+    terminal.tell(&summary, || words(&summary, options.unit()))
 }
 
 /// Computes the bore, and writes tables and pictures where a folder is named. `progress` is told the share done, 0…1.
@@ -209,7 +213,7 @@ fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<BoreSummary, 
         on_runout,
         on_helix: dependence::on_helix(&setup)?,
         levels,
-        warnings: warnings(&setup, &profile),
+        warnings: warnings(&setup, &profile, options.unit()),
     };
     if let Some(folder) = folder {
         write(&folder, &summary, &setup, &profile, options.depth)?;
@@ -241,7 +245,7 @@ fn listed(profile: &Profile, phi_deg: f64) -> Result<Roots, Failure> {
     Ok(Roots { phi_deg, radius_mm: profile.at(phi).0, on_ray, opposite: list.len() - on_ray, list })
 }
 
-fn warnings(setup: &Setup, profile: &Profile) -> Vec<String> {
+fn warnings(setup: &Setup, profile: &Profile, unit: Unit) -> Vec<String> {
     let mut said = Vec::new();
     let passes = &profile.passes;
     let seamless = truepath_bore::passes::Passes::laps_without_seam(&passes.motion);
@@ -254,8 +258,9 @@ fn warnings(setup: &Setup, profile: &Profile) -> Vec<String> {
     let cutting = cutting_teeth(passes, &profile.stretches);
     if cutting < passes.teeth.len() {
         said.push(format!(
-            "with {:.3} µm of runout {cutting} of {} teeth cut to the wall at the tip",
-            setup.cutter.runout_mm * 1e3,
+            "with {:.3} {} of runout {cutting} of {} teeth cut to the wall at the tip",
+            unit.small(setup.cutter.runout_mm),
+            unit.small_name(),
             passes.teeth.len()
         ));
     }

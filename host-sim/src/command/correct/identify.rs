@@ -6,6 +6,7 @@ use truepath_correction::correct::{MeasuredWall, identify_every};
 use truepath_correction::summary::{Parameter, parameters, wall_law_name};
 use truepath_correction::warnings::misread;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Remark;
 use truepath_ground::units::{float, mm};
 use truepath_job::pass::Pass;
 
@@ -45,7 +46,7 @@ pub struct Identified {
     /// The points that were used, in the order of the contours.
     pub points: Vec<Point>,
     /// What is doubtful.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Remark>,
 }
 
 /// Identifies machine and material from the same options as a correction, and as it does; nothing is written.
@@ -84,7 +85,7 @@ pub fn identify(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Iden
         }));
     }
     let mut told = std::collections::BTreeSet::new();
-    warnings.retain(|warning| told.insert(warning.clone()));
+    warnings.retain(|warning| told.insert(warning.to_string()));
     let one = found.first().ok_or_else(|| Failure::Internal("no wall was identified".to_owned()))?;
     Ok(Identified { identified: parameters(one), wall_law: wall_law_name(one.law()), points, warnings })
 }

@@ -11,6 +11,7 @@ use truepath_correction::learning::History;
 use truepath_correction::second_pass;
 use truepath_correction::summary::CorrectSummary;
 use truepath_correction::warnings::misread;
+use truepath_ground::count::counted;
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::length::Unit;
 use truepath_ground::output::OutputFolder;
@@ -99,7 +100,7 @@ pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
         text += &several::table(&s.contours, unit);
     }
     text += &format!(
-        "{} points used, {} set aside; wall follows the {} force, {} milling\n\
+        "{} used, {} set aside; wall follows the {} force, {} milling\n\
          \n\
          {}\n\
          \n\
@@ -119,7 +120,7 @@ pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
          largest correction                     {:>8.4} {name}\n\
          \n\
          identified                      value      sigma   before\n",
-        s.points_used,
+        counted(s.points_used, "point"),
         s.points_rejected + s.points_outlying,
         s.wall_law,
         s.milling,
@@ -201,8 +202,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
     if first.is_none() && first_pass_of(pass.program.bytes()).is_some() {
         remarks.push(
             "this job is that of a first pass: the corrected program leaves the stock of the second pass, on the next part. For the second pass of this part correct the job that was split, with --first-pass"
-                .to_owned(),
-        );
+                .into());
     }
     remarks.extend(misread(first.as_ref().unwrap_or(&pass), first.is_some(), &measurement.contacts));
     let (pass, mut done, points) = match &first {

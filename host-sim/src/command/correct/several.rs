@@ -66,7 +66,7 @@ pub(super) fn run(
         warnings.push(format!(
             "{name} (lines {}-{}) stays as it is: nothing was measured on its wall. Touch it with the program of truepath probe, or correct it alone with --feature",
             lines.first, lines.last
-        ));
+        ).into());
         warnings.extend(measurement.remarks(&measurement.source));
         contours.push(ContourSummary {
             contour: name,

@@ -3,6 +3,8 @@
 mod arm;
 mod lines;
 mod log;
+mod timing;
+mod update;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -119,6 +121,8 @@ enum Task {
         #[arg(long)]
         clear: bool,
     },
+    /// How regularly setpoints arrive and how fast they are answered, since the reset: a table and histograms.
+    Timing,
     /// The log of changes: who changed what, and when. The device keeps the newest 64 at least.
     Log {
         /// From the entry of this number on.
@@ -137,6 +141,9 @@ enum Task {
         /// Take no images that they sign.
         #[arg(long)]
         no_images: bool,
+        /// Take firmware that they sign.
+        #[arg(long)]
+        firmware: bool,
     },
     /// Lets the device trust a key no more, for ever; its button must have been held at its last reset.
     Revoke {
@@ -149,6 +156,17 @@ enum Task {
         /// By letting its watchdog run out.
         #[arg(long)]
         watchdog: bool,
+    },
+    /// Another firmware: sends an update, has it started, and confirms it once it answers. Without FILE: where an update stands.
+    Update {
+        /// The update (truepath firmware sign). Both image slots are erased for it.
+        file: Option<PathBuf>,
+        /// Leave it on trial: a reset, or five minutes, bring the firmware before back.
+        #[arg(long, requires = "file")]
+        trial: bool,
+        /// Confirm the one that is on trial.
+        #[arg(long, conflicts_with = "file")]
+        confirm: bool,
     },
     /// Makes an image on the device, from a job with its program and what the probe measured.
     Compute {
@@ -169,7 +187,7 @@ enum Task {
 impl Task {
     /// Whether it asks for what the device may log.
     const fn changes(&self) -> bool {
-        !matches!(self, Self::List | Self::Info | Self::Monitor { .. } | Self::Log { .. } | Self::Keys)
+        !matches!(self, Self::List | Self::Info | Self::Monitor { .. } | Self::Timing | Self::Log { .. } | Self::Keys)
     }
 }
 
@@ -295,6 +313,13 @@ fn carry_out(task: &Task, client: &mut Client<Line>, terminal: &Terminal) -> Res
             }
             terminal.tell(&status.counters, || counters_words(&status.counters))
         }
+        Task::Timing => {
+            let timing = client.timing()?.ok_or_else(|| BenchError::Option {
+                found: "the firmware of the device does not time its setpoints".to_owned(),
+                help: "load the firmware of this version".to_owned(),
+            })?;
+            terminal.tell(&timing, || timing::words(&timing))
+        }
         Task::Log { from } => {
             let (entries, next) = client.log(*from)?;
             let shown = log::Log::of(&entries, *from, next);
@@ -304,12 +329,16 @@ fn carry_out(task: &Task, client: &mut Client<Line>, terminal: &Terminal) -> Res
             let trust = trust(client)?;
             terminal.tell(&trust, || trust.words())
         }
-        Task::Provision { file, role, no_images } => {
-            let rights = Rights { role: *role, signs: !no_images };
+        Task::Provision { file, role, no_images, firmware } => {
+            let rights = Rights { role: *role, signs: !no_images, firmware: *firmware };
             let whole = rights == Rights::default();
             for key in read_public(file)? {
-                // What an older firmware knows as well.
-                client.done(if whole { Ask::Provision(key) } else { Ask::ProvisionAs { key, rights } })?;
+                client.done(match (firmware, whole) {
+                    (true, _) => Ask::ProvisionFirmware { key, rights },
+                    // What an older firmware knows as well.
+                    (false, true) => Ask::Provision(key),
+                    (false, false) => Ask::ProvisionAs { key, rights },
+                })?;
             }
             let trust = trust(client)?;
             terminal.tell(&trust, || trust.words())
@@ -318,6 +347,14 @@ fn carry_out(task: &Task, client: &mut Client<Line>, terminal: &Terminal) -> Res
             client.done(Ask::Revoke(*key))?;
             let trust = trust(client)?;
             terminal.tell(&trust, || trust.words())
+        }
+        Task::Update { file: Some(file), trial, .. } => update::run(client, file, *trial, terminal),
+        Task::Update { confirm, .. } => {
+            if *confirm {
+                client.done(Ask::Confirm)?;
+            }
+            let status = update::status(client)?;
+            terminal.tell(&status, || update::words(&status))
         }
         Task::Restart { watchdog } => done(client, Ask::Restart { watchdog: *watchdog }, terminal, "restarted"),
         Task::Compute { job, probe, activate: after, minutes } => {

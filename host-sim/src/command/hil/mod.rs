@@ -8,6 +8,7 @@ mod place;
 mod report;
 mod run;
 mod trust;
+mod update;
 
 use std::fmt::Write;
 use std::path::{Path as FilePath, PathBuf};
@@ -17,10 +18,11 @@ use clap::{Args, ValueEnum};
 use onlooker::Onlooker;
 use truepath_bench::{BenchError, Faults, RoundTrip};
 use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::length::Unit;
 
 pub use attack::{AttackReport, Length};
 pub use on_board::{OnBoard, on_board};
-pub use place::{Kind, attended, open};
+pub use place::{Kind, attended, open, updatable};
 pub use report::{Counts, Report};
 pub use run::{Options, SILENCE_US, STREAM_HZ, Source, recorded, run, run_watched, settings};
 
@@ -32,7 +34,7 @@ use crate::terminal::Terminal;
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// The correction image.
-    #[arg(required_unless_present_any = ["job", "attack"])]
+    #[arg(required_unless_present_any = ["job", "attack", "update"])]
     image: Option<PathBuf>,
     /// Have the device make the image of this job first, and compare it with the one made here.
     #[arg(long, value_name = "FILE", requires = "probe", conflicts_with = "image")]
@@ -56,6 +58,10 @@ pub struct Arguments {
     /// its last reset; afterwards it takes no image any more.
     #[arg(long, requires = "image", conflicts_with_all = ["attack", "job", "setpoints", "random", "count", "rate"])]
     trust: bool,
+    /// Try updates of the board's own program: PROGRAM is the one it runs, as it lies in the flash. The device is to be open, with
+    /// its button held at its last reset; of the virtual board --elf is then the loader.
+    #[arg(long, value_name = "PROGRAM", conflicts_with_all = ["image", "attack", "trust", "job", "setpoints", "random", "count", "rate"])]
+    update: Option<PathBuf>,
     /// The first day of a board, step by step, as docs/bringup.md has it: nothing but its two links may hang on it.
     #[arg(long, requires = "image", conflicts_with_all = ["attack", "trust", "job", "setpoints", "random", "rate", "link"])]
     bring_up: bool,
@@ -84,6 +90,9 @@ pub struct Arguments {
     /// Seed of controller and faults: the same seed gives the same run.
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
+    /// Say lengths in inches in what is told at the end.
+    #[arg(long, conflicts_with_all = ["attack", "trust", "update", "bring_up"])]
+    inch: bool,
     /// No live view on a terminal.
     #[arg(long)]
     plain: bool,
@@ -143,6 +152,11 @@ pub(crate) fn main(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fai
         let report = trust::run(&mut *attended(&kind(arguments)?)?, &bytes)?;
         return terminal.tell(&report, || report.words());
     }
+    if let Some(path) = &arguments.update {
+        let program = image::read(path)?;
+        let report = update::run(&mut *updatable(&kind(arguments)?, path)?, &program)?;
+        return terminal.tell(&report, || report.words());
+    }
     if let (true, Some(path)) = (arguments.bring_up, &arguments.image) {
         return brought_up(arguments, path, terminal);
     }
@@ -171,7 +185,7 @@ pub(crate) fn main(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fai
     // What is printed stays on the screen.
     drop(onlooker);
     report.on_board = made;
-    terminal.tell(&report, || words(&report))?;
+    terminal.tell(&report, || words(&report, unit(arguments)))?;
     match report.difference {
         Some(difference) => Err(BenchError::Differs(difference).into()),
         None if watch.is_stopping() => {
@@ -218,6 +232,11 @@ fn brought_up(arguments: &Arguments, image: &FilePath, terminal: &Terminal) -> R
     })
 }
 
+/// The unit in which lengths are told.
+const fn unit(arguments: &Arguments) -> Unit {
+    if arguments.inch { Unit::Inch } else { Unit::Millimetre }
+}
+
 fn options(arguments: &Arguments) -> Result<Options, Failure> {
     let (source, count, file_hz) = match (&arguments.setpoints, arguments.random) {
         (Some(path), _) => {
@@ -254,14 +273,14 @@ fn kind(arguments: &Arguments) -> Result<Kind, BenchError> {
     })
 }
 
-fn words(report: &Report) -> String {
+fn words(report: &Report, unit: Unit) -> String {
     let mut text = String::new();
     // Writing to a String cannot fail.
-    let _ = write_words(report, &mut text);
+    let _ = write_words(report, unit, &mut text);
     text
 }
 
-fn write_words(r: &Report, out: &mut String) -> std::fmt::Result {
+fn write_words(r: &Report, unit: Unit, out: &mut String) -> std::fmt::Result {
     writeln!(out, "{} (firmware {}), {}", r.device.board, r.device.firmware, r.board)?;
     if let Some(m) = &r.on_board {
         writeln!(out, "image made on the device in {:.1} s: {:08x}, {} bytes, as here", m.seconds, m.crc, m.bytes)?;
@@ -273,7 +292,7 @@ fn write_words(r: &Report, out: &mut String) -> std::fmt::Result {
     writeln!(out, "{} setpoints, {} answers compared, {} parts armed", r.setpoints, r.answers, r.armed)?;
     let [off, bypass, armed, active, hold, fault] = r.modes;
     writeln!(out, "answers: Off {off}, Bypass {bypass}, Armed {armed}, Active {active}, Hold {hold}, Fault {fault}")?;
-    writeln!(out, "largest correction {:.6} mm", r.max_correction_mm)?;
+    writeln!(out, "largest correction {:.6} {}", unit.of(r.max_correction_mm), unit.name())?;
     let i = &r.injected;
     let faults = [i.dropped, i.corrupted, i.reordered, i.repeated, i.pauses];
     if faults.iter().any(|&count| count > 0) {

@@ -1,8 +1,8 @@
 //! Where a board is, and how it is reached.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use truepath_bench::{BenchError, Board, BulkBoard, Emulator, InProcess, Line, UartBoard, find_elf};
+use truepath_bench::{BenchError, Board, BulkBoard, Emulator, InProcess, Line, UartBoard, find_elf, find_loader};
 
 /// Which board.
 #[derive(Clone, Debug)]
@@ -40,7 +40,7 @@ impl Kind {
 /// # Errors
 /// Emulator, firmware or port are missing.
 pub fn open(kind: &Kind, window: u32, paced: bool) -> Result<Box<dyn Board>, BenchError> {
-    opened(kind, window, paced, false)
+    opened(kind, window, paced, (false, None))
 }
 
 /// Opens a board with its button held, so that keys can be provisioned. At a real one somebody has held it.
@@ -48,13 +48,32 @@ pub fn open(kind: &Kind, window: u32, paced: bool) -> Result<Box<dyn Board>, Ben
 /// # Errors
 /// As [`open`].
 pub fn attended(kind: &Kind) -> Result<Box<dyn Board>, BenchError> {
-    opened(kind, 1, false, true)
+    opened(kind, 1, false, (true, None))
 }
 
-fn opened(kind: &Kind, window: u32, paced: bool, held: bool) -> Result<Box<dyn Board>, BenchError> {
-    let start = |elf: &Option<PathBuf>| {
-        let elf = find_elf(elf.as_deref())?;
-        if held { Emulator::attended(&elf) } else { Emulator::start(&elf) }
+/// The same of a board whose program can be replaced; the virtual one starts with this program behind its loader.
+///
+/// # Errors
+/// As [`open`]; the device in this process has no loader.
+pub fn updatable(kind: &Kind, program: &Path) -> Result<Box<dyn Board>, BenchError> {
+    if matches!(kind, Kind::Host) {
+        let (found, help) = ("the device in this process has no loader".to_owned(), "add --board virtual".to_owned());
+        return Err(BenchError::Option { found, help });
+    }
+    opened(kind, 1, false, (true, Some(program)))
+}
+
+/// `held`: the button; and the program behind a loader.
+fn opened(
+    kind: &Kind,
+    window: u32,
+    paced: bool,
+    (held, program): (bool, Option<&Path>),
+) -> Result<Box<dyn Board>, BenchError> {
+    let start = |elf: &Option<PathBuf>| match program {
+        Some(program) => Emulator::loaded(&find_loader(elf.as_deref())?, program),
+        None if held => Emulator::attended(&find_elf(elf.as_deref())?),
+        None => Emulator::start(&find_elf(elf.as_deref())?),
     };
     Ok(match kind {
         Kind::Host if held => Box::new(BulkBoard::new(InProcess::attended()?)),

@@ -70,7 +70,7 @@ pub fn run(board: &mut dyn Board, image: &[u8]) -> Result<TrustReport, Failure> 
     let elsewhere = DeviceClasses::of(&[DeviceClass::LinuxCnc]).unwrap_or(all);
     let first_id = board.first_id();
     let class = board.client().keys()?.class;
-    let mut tried = Tried { attempts: Vec::new(), board };
+    let mut tried = Tried::of(board);
 
     if !tried.board.client().keys()?.keys.is_open() {
         let (found, help) = ("the device has a key already".to_owned(), "try it on one that is open".to_owned());
@@ -126,11 +126,11 @@ pub fn run(board: &mut dyn Board, image: &[u8]) -> Result<TrustReport, Failure> 
     tried.upload("not signed, all keys revoked", image, needs(Role::Engineer))?;
     tried.log_in("login with a key, all keys revoked", &second, Role::Read, unknown_key(&second))?;
     tried.in_use("at the end", None)?;
-    Ok(TrustReport { board: tried.board.describe(), attempts: tried.attempts })
+    Ok(tried.report())
 }
 
 /// Access with somebody's key.
-fn access(by: &Signer) -> Access {
+pub(super) fn access(by: &Signer) -> Access {
     let signer = by.clone();
     Access::new(&by.public(), move |message| signer.sign(message))
 }
@@ -148,9 +148,18 @@ const fn untrusted(error: SignatureError) -> Result<(), Denial> {
 }
 
 /// The board, and what was tried on it.
-struct Tried<'b> {
-    board: &'b mut dyn Board,
+pub(super) struct Tried<'b> {
+    pub board: &'b mut dyn Board,
     attempts: Vec<Attempt>,
+}
+
+impl<'b> Tried<'b> {
+    pub fn of(board: &'b mut dyn Board) -> Self {
+        Self { board, attempts: Vec::new() }
+    }
+    pub fn report(self) -> TrustReport {
+        TrustReport { board: self.board.describe(), attempts: self.attempts }
+    }
 }
 
 impl Tried<'_> {
@@ -158,7 +167,7 @@ impl Tried<'_> {
     fn roles(&mut self, shop: &Signer, operator: &Signer, stranger: &Signer) -> Result<(), BenchError> {
         let key = shop.public().id();
         let forged = || Err(Denial::Access(AccessError::Forged { key }));
-        let only_operates = Rights { role: Role::Operate, signs: false };
+        let only_operates = Rights { role: Role::Operate, signs: false, firmware: false };
         self.ask("key of an operator", Ask::ProvisionAs { key: operator.public(), rights: only_operates }, Ok(()))?;
         let settings = self.board.client().settings()?;
         self.ask("settings without a login", Ask::Configure(settings), needs(Role::Engineer))?;
@@ -264,7 +273,7 @@ impl Tried<'_> {
         self.keep(given, done.map_err(BenchError::Denied), expected)
     }
     /// Keeps what the device did, if it is what it has to do.
-    fn keep(
+    pub fn keep(
         &mut self,
         given: &'static str,
         done: Result<(), BenchError>,
@@ -281,7 +290,7 @@ impl Tried<'_> {
         self.attempts.push(Attempt { given, refused: found.err().map(|denial| denial.to_string()) });
         Ok(())
     }
-    fn ask(&mut self, given: &'static str, ask: Ask<'_>, expected: Result<(), Denial>) -> Result<(), BenchError> {
+    pub fn ask(&mut self, given: &'static str, ask: Ask<'_>, expected: Result<(), Denial>) -> Result<(), BenchError> {
         let done = self.board.client().done(ask);
         self.keep(given, done, expected)
     }

@@ -12,6 +12,7 @@ use truepath_correction::codes::{Q002, Q003, Q005, Q007};
 use truepath_correction::learn::{LearnSummary, learn};
 use truepath_correction::surface::touched::TouchedSurface;
 use truepath_ground::codes::C001;
+use truepath_ground::count::counted;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::files;
 use truepath_ground::output::OutputFolder;
@@ -23,6 +24,7 @@ use truepath_report::correction_csv;
 use truepath_report::page::render;
 use truepath_report::pages::learned;
 
+pub use self::planned::LearnedPlanSummary;
 use super::begin::BeginFlags;
 use super::correct::words as correction;
 use super::correction_files::{FILES, HISTORY, MILLED, commit, write_contour, write_program};
@@ -82,33 +84,11 @@ pub struct Options {
 
 /// Learns and prints what was learned.
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
-    if holds_planned(&options.from) {
-        refuse_same_folder(options)?;
-        if let Some(part) = options.part {
-            let help = "leave it out: a plan is learned from part after part";
-            return Err(InputError::new(C001, format!("--part {part}"), "no number for planned passes", help).into());
-        }
-        let mut job = options.said.read(&options.job)?;
-        job.signer = options.sign.signer()?;
-        job.override_part(&PartFlags { tolerance: options.tolerance.clone(), ..PartFlags::default() })?;
-        let tolerance = options.tolerance.as_ref().and(job.part.tolerance);
-        let tolerance_mm = tolerance.map(|tolerance| mm(tolerance.upper).min(-mm(tolerance.lower)));
-        let to = (options.output.as_path(), options.force);
-        let wish = planned::Wish { replan: options.replan, tolerance_mm, route: options.route };
-        let Some(probe) = options.probe.as_deref().filter(|_| options.dimensions.is_none()) else {
-            let found = "--dimensions of a part that was cut with planned passes";
-            let help = "touch it with a probe: planned passes are learned from points at several heights";
-            return Err(InputError::new(C001, found, "--probe", help).into());
-        };
-        planned::main((job, &options.begin), (probe, &options.from), to, wish, terminal)?;
+    if of_planned(options) {
+        planned::tell(&terminal.watch("learning", |progress| run_planned(options, progress))?, terminal)?;
         #[cfg(not(target_family = "wasm"))]
         keep((&options.job, options.begin.store.as_deref()), &options.output, "learn", terminal);
         return Ok(());
-    }
-    if options.replan {
-        let found = format!("--replan, and {} holds no {PLAN_HISTORY}", options.from.display());
-        let help = "leave --replan out, or name a folder of truepath plan --write with --from";
-        return Err(InputError::new(C001, found, "a folder of planned passes", help).into());
     }
     let summary = terminal.watch("learning", |progress| run(options, progress))?;
     terminal.warn_all(&summary.correct.warnings);
@@ -130,7 +110,7 @@ fn words(s: &LearnSummary) -> String {
         return several::table(&s.contours, unit);
     }
     let mut text = format!(
-        "part {} at {} places, error of the target      largest      rms\n\
+        "part {} at {}, error of the target      largest      rms\n\
          \x20 measured                           {:>12.4} {:>8.4} {name}\n\
          \x20 part {} there                       {:>12.4} {:>8.4} {name}\n\
          \x20 promised{}                    {:>12.4}          {name}, {} of {} places within 2 sigma\n\
@@ -141,7 +121,7 @@ fn words(s: &LearnSummary) -> String {
          \x20 whole wall, by the model           {:>12.4} ± {:.4} {name}, 95 % within {:.4} ± {:.4} {name}\n\
          \x20   {}\n",
         v.part,
-        v.measured_error_mm.places,
+        counted(v.measured_error_mm.places, "place"),
         unit.of(v.measured_error_mm.max_mm),
         unit.of(v.measured_error_mm.rms_mm),
         v.previous_error_mm.part,
@@ -166,8 +146,8 @@ fn words(s: &LearnSummary) -> String {
     );
     if let Some(held) = &v.holdout_residual_mm {
         text += &format!(
-            "\x20 at {} places kept from a first fit the model missed {:.4} {name} before and {:.4} {name} after learning\n",
-            held.places.len(),
+            "\x20 at {} kept from a first fit the model missed {:.4} {name} before and {:.4} {name} after learning\n",
+            counted(held.places.len(), "place"),
             unit.of(held.before_mm),
             unit.of(held.after_mm)
         );
@@ -178,11 +158,46 @@ fn words(s: &LearnSummary) -> String {
     text + &format!("\ncorrection of part {}\n", v.part.saturating_add(1))
 }
 
+/// Whether the part was cut with planned passes.
+pub fn of_planned(options: &Options) -> bool {
+    holds_planned(&options.from)
+}
+
+/// Learns from a part that was cut with planned passes, and writes the outputs.
+///
+/// # Errors
+/// A folder without a history of planned passes, what they cannot be learned from, and outputs that cannot be written.
+pub fn run_planned(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnedPlanSummary, Failure> {
+    refuse_same_folder(options)?;
+    if let Some(part) = options.part {
+        let help = "leave it out: a plan is learned from part after part";
+        return Err(InputError::new(C001, format!("--part {part}"), "no number for planned passes", help).into());
+    }
+    let mut job = options.said.read(&options.job)?;
+    job.signer = options.sign.signer()?;
+    job.override_part(&PartFlags { tolerance: options.tolerance.clone(), ..PartFlags::default() })?;
+    let tolerance = options.tolerance.as_ref().and(job.part.tolerance);
+    let tolerance_mm = tolerance.map(|tolerance| mm(tolerance.upper).min(-mm(tolerance.lower)));
+    let to = (options.output.as_path(), options.force);
+    let wish = planned::Wish { replan: options.replan, tolerance_mm, route: options.route };
+    let Some(probe) = options.probe.as_deref().filter(|_| options.dimensions.is_none()) else {
+        let found = "--dimensions of a part that was cut with planned passes";
+        let help = "touch it with a probe: planned passes are learned from points at several heights";
+        return Err(InputError::new(C001, found, "--probe", help).into());
+    };
+    planned::run((job, &options.begin), (probe, &options.from), to, wish, progress)
+}
+
 /// Learns and writes the outputs.
 ///
 /// # Errors
 /// As [`learn`], a folder without a history or with another corrected program, and outputs that cannot be written.
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSummary, Failure> {
+    if options.replan {
+        let found = format!("--replan, and {} holds no {PLAN_HISTORY}", options.from.display());
+        let help = "leave --replan out, or name a folder of truepath plan --write with --from";
+        return Err(InputError::new(C001, found, "a folder of planned passes", help).into());
+    }
     refuse_same_folder(options)?;
     let mut job = options.said.read(&options.job)?;
     job.signer = options.sign.signer()?;

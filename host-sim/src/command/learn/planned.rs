@@ -8,8 +8,9 @@ use truepath_correction::plan::learn::{Passes, PlannedCut, PlannedVerdict, learn
 use truepath_correction::remarks::said_of_every;
 use truepath_correction::surface::touched::TouchedSurface;
 use truepath_ground::codes::C001;
+use truepath_ground::count::counted;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Remark, Unit};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
@@ -40,7 +41,7 @@ pub struct LearnedPlanSummary {
     /// The program of the next part.
     written: Written,
     /// What the user should know.
-    warnings: Vec<String>,
+    warnings: Vec<Remark>,
 }
 
 /// What was learned of a contour.
@@ -73,17 +74,10 @@ pub(super) struct Wish {
     pub(super) route: Option<Route>,
 }
 
-/// Learns from the points in a file of the part that the planned program in a folder has cut, and prints what was learned.
-pub(super) fn main(
-    (job, begin): (JobFile, &BeginFlags),
-    measured: (&FilePath, &FilePath),
-    to: (&FilePath, bool),
-    wish: Wish,
-    terminal: &Terminal,
-) -> Result<(), Failure> {
-    let summary = terminal.watch("learning", |progress| run((job, begin), measured, to, wish, progress))?;
+/// Prints what was learned.
+pub(super) fn tell(summary: &LearnedPlanSummary, terminal: &Terminal) -> Result<(), Failure> {
     terminal.warn_all(&summary.warnings);
-    terminal.tell(&summary, || words(&summary))
+    terminal.tell(summary, || words(summary))
 }
 
 fn words(summary: &LearnedPlanSummary) -> String {
@@ -94,9 +88,9 @@ fn words(summary: &LearnedPlanSummary) -> String {
     let next =
         summary.learned.iter().chain(&summary.contours).map(|one| one.verdict.part + 1).next().unwrap_or_default();
     text + &format!(
-        "\nwritten: {}, {} passes\n{}next: mill part {next} with it; touch it, and learn from there\n",
+        "\nwritten: {}, {}\n{}next: mill part {next} with it; touch it, and learn from there\n",
         summary.written.program.display(),
-        summary.written.passes(),
+        counted(summary.written.passes(), "pass"),
         summary.written.of_images(),
     )
 }
@@ -105,11 +99,11 @@ fn of_contour(one: &LearnedContour, unit: Unit) -> String {
     let (small, um, mm) = (|mm: f64| unit.small(mm), unit.small_name(), unit.name());
     let (verdict, plan, measured) = (&one.verdict, &one.plan, &one.measured_surface);
     let mut text = format!(
-        "part {} at {} points: largest error {:.1} {um}, rms {:.1} {um}; {:.1} ± {:.1} {um} were predicted for the worst place of the wall\n\
+        "part {} at {}: largest error {:.1} {um}, rms {:.1} {um}; {:.1} ± {:.1} {um} were predicted for the worst place of the wall\n\
          {} (2 sigma), 95 % of the points within {:.4} {mm}\n  {}\n\
          the model of the parts before misses these points by {:.1} {um} (rms), that of all parts by {:.1} {um}\n",
         verdict.part,
-        verdict.points,
+        counted(verdict.points, "point"),
         small(verdict.measured_max_mm),
         small(verdict.measured_rms_mm),
         small(verdict.promised_mm),
@@ -162,8 +156,8 @@ fn refuse_other_route(said: Option<Route>, of_plan: Route) -> Result<(), InputEr
     }
 }
 
-/// Learns and writes the outputs.
-fn run(
+/// Learns from the points in a file of the part that the planned program in a folder has cut, and writes the outputs.
+pub(super) fn run(
     (job, begin): (JobFile, &BeginFlags),
     (probe, from): (&FilePath, &FilePath),
     (output, force): (&FilePath, bool),
@@ -208,9 +202,11 @@ fn run(
         }
         failure => failure,
     })?;
-    let mut warnings: Vec<String> =
-        left.iter().map(|name| format!("{name} stays as it is: {} has no history of it", from.display())).collect();
-    let said: Vec<Vec<String>> = measured
+    let mut warnings: Vec<Remark> = left
+        .iter()
+        .map(|name| format!("{name} stays as it is: {} has no history of it", from.display()).into())
+        .collect();
+    let said: Vec<Vec<Remark>> = measured
         .iter()
         .map(|(pass, measurement)| [pass.warnings.clone(), measurement.remarks(&file)].concat())
         .collect();
@@ -227,7 +223,7 @@ fn run(
             verdict.part,
             points(&|one| one.outlying),
             points(&|one| one.points)
-        ));
+        ).into());
     }
     let numbers: Vec<usize> = learned.contours.iter().map(|one| one.chosen).collect();
     let written = write_files((&folder, output), &passes, several, &numbers, learned.written, &mut warnings)?;
@@ -246,8 +242,9 @@ fn run(
     folder.write(PROBED, file.bytes())?;
     let shown: Vec<PlannedWall> =
         contours.iter().map(|one| PlannedWall { name: one.contour.clone(), plan: &one.plan }).collect();
-    folder.write(REPORT, planned_page(&shown, &passes.first().map(program_name).unwrap_or_default()).as_bytes())?;
     let unit = passes.first().map(Pass::unit).unwrap_or_default();
+    folder
+        .write(REPORT, planned_page(&shown, &passes.first().map(program_name).unwrap_or_default(), unit).as_bytes())?;
     let learned = if several { None } else { contours.pop() };
     let written = Written { learns: true, ..written };
     let summary = LearnedPlanSummary { version: 1, unit, learned, contours, written, warnings };

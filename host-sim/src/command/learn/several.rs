@@ -10,7 +10,7 @@ use truepath_correction::remarks::said_of_every;
 use truepath_correction::surface::touched::TouchedSurface;
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::files;
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Remark, Unit};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::job::Route;
 use truepath_job::pass::Pass;
@@ -54,7 +54,7 @@ pub(super) fn run(
         return Err(Q010.error(found, "points on every corrected contour").in_file(readings.path()).into());
     }
     let folder = OutputFolder::create(output, force, FILES)?;
-    let remarks: Vec<Vec<String>> =
+    let remarks: Vec<Vec<Remark>> =
         measured.iter().map(|(_, measurement)| measurement.remarks(&measurement.source)).collect();
     let walls: Vec<CorrectedWall> = measured
         .iter()
@@ -65,8 +65,10 @@ pub(super) fn run(
     let route = route.or(measured.first().map(|(pass, _)| pass.job.route)).unwrap_or_default();
     let done = learn_every(&walls, &[route], progress)?;
 
-    let mut warnings: Vec<String> =
-        left.iter().map(|name| format!("{name} stays as it is: {} has no history of it", from.display())).collect();
+    let mut warnings: Vec<Remark> = left
+        .iter()
+        .map(|name| format!("{name} stays as it is: {} has no history of it", from.display()).into())
+        .collect();
     let (mut contours, mut pages) = (Vec::new(), Vec::new());
     for (wall, done) in walls.iter().zip(&done) {
         let (name, place) = (contour_name(wall.pass), contour_folder(wall.pass));

@@ -11,7 +11,7 @@ use summary::{summary, words};
 use truepath_core::gcode::{Dialect, PointlessLength, Units};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::files;
-use truepath_ground::length;
+use truepath_ground::length::{self, Unit};
 use truepath_ground::output::{OutputFile, OutputFolder, json};
 use truepath_job::job::{DECIMALS, WORD_DIALECTS, one_of};
 use truepath_multiaxis::ball::Contacts;
@@ -217,9 +217,11 @@ fn steered(
     }
     // Its own text can only stay as it is.
     if let (Some(worst), Some(_), false) = (found.report.worst, &found.out, options.partial) {
+        let unit = Unit::from(found.report.units);
         let found = format!(
-            "the move leaves its chord by {:.4} mm, and line {line} steers the program or computes a place",
-            worst.1
+            "the move leaves its chord by {:.4} {}, and line {line} steers the program or computes a place",
+            unit.of(worst.1),
+            unit.name()
         );
         let help = "add --unroll to have the program written out plainly, or --partial to leave it as it is";
         let expected = "a program whose lines can be rewritten in place";
@@ -264,7 +266,7 @@ fn finish(
     }
     if let Some(folder) = folder {
         folder.write("summary.json", &json(&summary)?)?;
-        folder.write("errors.svg", &picture(&report.profile, options.tolerance)?)?;
+        folder.write("errors.svg", &picture(&report.profile, options.tolerance, summary.unit)?)?;
         folder.commit()?;
     }
     if let Some(out) = out {
@@ -278,7 +280,7 @@ fn check_tolerance(tolerance_mm: f64) -> Result<(), InputError> {
         return Ok(());
     }
     let found = format!("the tolerance is {tolerance_mm} mm");
-    Err(A010.error(found, "a length above 0, at most 1000 mm"))
+    Err(A010.error(found, format!("a length above 0, {}", length::between(0.0, 1000.0))))
 }
 
 /// A surface is of use to a ball end only.

@@ -2,6 +2,8 @@
 
 use std::path::Path as FilePath;
 
+use truepath_ground::count::counted;
+use truepath_ground::length::Unit;
 use truepath_multiaxis::Machine;
 use truepath_multiaxis::ball::{ContactSpan, Contacts};
 use truepath_multiaxis::machine::{Coordinates, Kind};
@@ -13,6 +15,9 @@ use truepath_multiaxis::statistics::Figures;
 pub struct MultiaxisSummary {
     /// Version of this summary.
     pub version: u32,
+    /// The unit of the program, in which people are told.
+    #[serde(skip)]
+    pub unit: Unit,
     /// `table-table A C`.
     pub machine: String,
     /// What XYZ are: `joints` or `tip`; those of `tip_moves` moves are the tip's in any case.
@@ -62,6 +67,7 @@ pub(super) fn summary(program: &FilePath, machine: &Machine, settings: &Settings
     let before = report.before.figures();
     MultiaxisSummary {
         version: 1,
+        unit: report.units.into(),
         machine: format!("{kind} {first} {second}"),
         coordinates: if settings.coordinates == Coordinates::Tip { "tip" } else { "joints" },
         tip_moves: report.tips,
@@ -84,7 +90,7 @@ pub(super) fn summary(program: &FilePath, machine: &Machine, settings: &Settings
 }
 
 fn warnings(program: &FilePath, report: &Report) -> Vec<String> {
-    let name = program.display();
+    let (name, unit) = (program.display(), Unit::from(report.units));
     let mut all: Vec<String> = Vec::new();
     for (note, line, count) in report.notes.iter() {
         let more = if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() };
@@ -98,7 +104,8 @@ fn warnings(program: &FilePath, report: &Report) -> Vec<String> {
         ));
     }
     for left in report.left.moves.iter().take(10) {
-        let error = left.error_mm.map_or_else(String::new, |e| format!(" (chord error {e:.4} mm)"));
+        let error =
+            left.error_mm.map_or_else(String::new, |e| format!(" (chord error {:.4} {})", unit.of(e), unit.name()));
         all.push(format!("{name}:{}: left as it is: {}{error}", left.line, left.reason));
     }
     if report.left.count > 10 {
@@ -111,27 +118,31 @@ fn warnings(program: &FilePath, report: &Report) -> Vec<String> {
 type Figure = fn(&Figures) -> f64;
 
 pub(super) fn words(s: &MultiaxisSummary) -> String {
+    let (unit, name) = (s.unit, s.unit.name());
     let xyz = match (s.tip_moves, s.moves) {
         (0, 0) if s.coordinates == "tip" => "places of the tool tip",
         (0, _) => "positions of the joints",
         (tips, all) if tips == all => "places of the tool tip",
         _ => "positions of the joints, and of the tool tip under centre point codes",
     };
-    let mut text = format!("{}; X, Y, Z are {xyz}; tolerance {} mm\n\n", s.machine, s.tolerance_mm);
-    text += "chord error, mm         before       after\n";
+    let mut text = format!("{}; X, Y, Z are {xyz}; tolerance {} {name}\n\n", s.machine, unit.of(s.tolerance_mm));
+    text += &format!("chord error, {name}         before       after\n");
     let rows: [(&str, Figure); 4] = [
         ("maximum", |v| v.maximum_mm),
         ("minimum", |v| v.minimum_mm),
         ("mean", |v| v.mean_mm),
         ("standard deviation", |v| v.standard_deviation_mm),
     ];
-    for (name, value) in rows {
-        text += &format!("{name:<20} {:>9.5} {:>11.5}\n", value(&s.before), value(&s.after));
+    for (row, value) in rows {
+        let [before, after] = [&s.before, &s.after].map(|figures| unit.of(value(figures)));
+        text += &format!("{row:<20} {before:>9.5} {after:>11.5}\n");
     }
     text += &format!("{:<20} {:>9} {:>11}\n\n", "moves", s.before.count, s.after.count);
     text += &format!(
-        "{} of {} five-axis moves rewritten, {} points inserted\n",
-        s.moves_rewritten, s.moves, s.points_inserted
+        "{} of {} rewritten, {} inserted\n",
+        s.moves_rewritten,
+        counted(s.moves, "five-axis move"),
+        counted(s.points_inserted, "point")
     );
     if s.singular.count > 0 {
         let lines: Vec<String> = s.singular.lines.iter().take(12).map(u32::to_string).collect();
@@ -143,12 +154,12 @@ pub(super) fn words(s: &MultiaxisSummary) -> String {
         text += &format!("{} whose tool axis cannot keep to the great circle\n", counted(s.orientation.count, "move"));
     }
     if let Some(contact) = &s.contact {
-        let span = |[low, high]: [f64; 2], digits| format!("{low:.digits$} to {high:.digits$}");
+        let span = |[low, high]: [f64; 2]| format!("{low:.2} to {high:.2}");
+        let [low, high] = contact.cutting_radius_mm.map(|mm| unit.of(mm));
         text += &format!(
-            "ball end on the surface: {} degrees from its tip, cutting radius {} mm, lag of the edge {} degrees\n",
-            span(contact.polar_deg, 2),
-            span(contact.cutting_radius_mm, 3),
-            span(contact.lag_deg, 2)
+            "ball end on the surface: {} degrees from its tip, cutting radius {low:.3} to {high:.3} {name}, lag of the edge {} degrees\n",
+            span(contact.polar_deg),
+            span(contact.lag_deg)
         );
         if contact.on_shank > 0 {
             text += &format!("{} where the shank would touch it\n", counted(contact.on_shank, "place"));
@@ -158,8 +169,4 @@ pub(super) fn words(s: &MultiaxisSummary) -> String {
         text += &format!("{} not brought within the tolerance\n", counted(s.left.count, "move"));
     }
     text
-}
-
-fn counted(count: u64, what: &str) -> String {
-    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
 }

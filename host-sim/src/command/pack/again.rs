@@ -9,6 +9,7 @@ use serde_json::Value;
 use truepath_correction::learn::LearnSummary;
 use truepath_correction::shop::Belief;
 use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::length::Unit;
 use truepath_job::job::{Route, Said, Which};
 use truepath_story::contents::{Command, Step, Story};
 
@@ -29,6 +30,9 @@ pub struct Again {
     pub parts: Vec<CameOut>,
     /// Whether every file is the same.
     pub same: bool,
+    /// The unit of the program, in which people are told.
+    #[serde(skip)]
+    pub unit: Unit,
 }
 
 /// A correction made again.
@@ -73,12 +77,13 @@ impl Promised {
         }
     }
 
-    fn words(&self) -> String {
-        let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.4}"));
+    fn words(&self, unit: Unit) -> String {
+        let number = |mm: Option<f64>| mm.map_or_else(|| "-".to_owned(), |mm| format!("{:.4}", unit.of(mm)));
         format!(
-            "{} ± {} mm (mean over the height, 1 sigma), {} at the worst height; floor {}",
+            "{} ± {} {} (mean over the height, 1 sigma), {} at the worst height; floor {}",
             number(self.mean_mm),
             number(self.mean_sigma_mm),
+            unit.name(),
             number(self.profile_mm),
             number(self.floor_mm)
         )
@@ -122,6 +127,7 @@ impl CameOut {
 impl Again {
     /// For people.
     pub fn words(&self) -> String {
+        let (unit, name) = (self.unit, self.unit.name());
         let mut text = format!("made again by {} what {} made:\n", self.now, self.then);
         for one in &self.corrections {
             let folder = if one.folder.is_empty() { "." } else { &one.folder };
@@ -135,22 +141,22 @@ impl Again {
             for (name, how) in &one.differ {
                 let _ = writeln!(text, "    {name}: {how}");
             }
-            let _ = writeln!(text, "    promises {}", one.promised.words());
+            let _ = writeln!(text, "    promises {}", one.promised.words(unit));
             if one.promised_then != one.promised {
-                let _ = writeln!(text, "    promised {} then", one.promised_then.words());
+                let _ = writeln!(text, "    promised {} then", one.promised_then.words(unit));
             }
         }
         for part in &self.parts {
             let _ = writeln!(
                 text,
-                "  part {}: {:.4} mm promised (± {:.4}), {:.4} mm measured at {} places, {} of them within 2 sigma; the part before {:.4} mm",
+                "  part {}: {:.4} {name} promised (± {:.4}), {:.4} {name} measured at {} places, {} of them within 2 sigma; the part before {:.4} {name}",
                 part.part,
-                part.promised_mm,
-                part.sigma_mm,
-                part.measured_mm,
+                unit.of(part.promised_mm),
+                unit.of(part.sigma_mm),
+                unit.of(part.measured_mm),
                 part.places,
                 part.within_two_sigma,
-                part.before_mm
+                unit.of(part.before_mm)
             );
         }
         text
@@ -164,11 +170,12 @@ impl Again {
 pub fn again(story: &Story, progress: &mut dyn FnMut(f64)) -> Result<Again, Failure> {
     let place = Place::of(story)?;
     let count = (story.told.steps.len() + usize::from(story.told.cut_again.is_some())) as f64;
-    let (mut corrections, mut parts) = (Vec::new(), Vec::new());
+    let (mut corrections, mut parts, mut unit) = (Vec::new(), Vec::new(), Unit::default());
     for (at, step) in story.told.steps.iter().enumerate() {
         let mut told = |share: f64| progress((at as f64 + share) / count);
         let made = place.make(story, step, &format!("again-{at}"), &mut told)?;
         parts.extend(made.came_out);
+        unit = made.unit;
         corrections.push(compared(story, step, &made));
     }
     if let (Some(probe), Some(last)) = (&story.told.cut_again, story.told.steps.last()) {
@@ -183,7 +190,7 @@ pub fn again(story: &Story, progress: &mut dyn FnMut(f64)) -> Result<Again, Fail
     progress(1.0);
     let same = corrections.iter().all(|one: &MadeAgain| one.differ.is_empty());
     let now = concat!("truepath ", env!("CARGO_PKG_VERSION")).to_owned();
-    Ok(Again { then: story.told.by.clone(), now, corrections, parts, same })
+    Ok(Again { then: story.told.by.clone(), now, corrections, parts, same, unit })
 }
 
 /// The files of a story in a folder of their own.
@@ -195,6 +202,8 @@ pub(super) struct Made {
     pub(super) files: BTreeMap<String, Vec<u8>>,
     /// How the part came out that it was learned from.
     came_out: Option<CameOut>,
+    /// The unit of the program.
+    unit: Unit,
 }
 
 impl Place {
@@ -239,7 +248,7 @@ impl Place {
         let mut routes: Vec<Route> = Vec::new();
         routes.extend(has("corrected.nc").then_some(Route::Program));
         routes.extend(has(".tpi").then_some(Route::Coprocessor));
-        let mut made = Made { files: BTreeMap::new(), came_out: None };
+        let mut made = Made { files: BTreeMap::new(), came_out: None, unit: Unit::default() };
         let routes = if routes.is_empty() { vec![None] } else { routes.into_iter().map(Some).collect() };
         for (number, route) in routes.into_iter().enumerate() {
             let output = self.0.path().join(format!("{to}-{number}"));
@@ -265,13 +274,15 @@ impl Place {
                         said,
                         ..Default::default()
                     };
-                    made.came_out = Some(CameOut::of(&learn::run(&options, progress)?));
+                    let summary = learn::run(&options, progress)?;
+                    made.unit = summary.correct.unit;
+                    made.came_out = Some(CameOut::of(&summary));
                 }
                 _ => {
                     let output = output.clone();
                     let options =
                         correct::Options { job, probe, dimensions, output, route, begin, said, ..Default::default() };
-                    correct::run(&options, progress)?;
+                    made.unit = correct::run(&options, progress)?.unit;
                 }
             }
             let mut files = BTreeMap::new();

@@ -19,7 +19,7 @@ use truepath_chart::raster::png;
 use truepath_chart::view::View;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::files;
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Typed, Unit};
 use truepath_ground::output::OutputFile;
 use truepath_ground::sheet::{names as names_of, read_bounded};
 use truepath_job::job::Which;
@@ -103,15 +103,15 @@ struct Picture {
     /// The picture: .svg or .png.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// Draw in inches; --from and --to are then in inches, too.
+    /// Draw in inches; --from and --to are then in inches, too, where they have no unit.
     #[arg(long)]
     inch: bool,
-    /// First place shown along the contour, mm.
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
-    from: Option<f64>,
-    /// Last place shown along the contour, mm.
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
-    to: Option<f64>,
+    /// First place shown along the contour, mm, or with its unit (1.5in).
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    from: Option<Typed>,
+    /// Last place shown along the contour, mm, or with its unit (1.5in).
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    to: Option<Typed>,
     /// Width, 1/96 inch on paper.
     #[arg(long, value_name = "PX")]
     width: Option<u32>,
@@ -133,7 +133,8 @@ impl Picture {
     fn view(&self, magnify: Option<f64>) -> View {
         let Self { from, to, width, height, .. } = *self;
         let unit = if self.inch { Unit::Inch } else { Unit::Millimetre };
-        let [from_mm, to_mm] = [from, to].map(|at| at.map(|said| unit.in_mm(said)));
+        let mm = |at: Typed| if at.unit.is_none() { unit.in_mm(at.mm) } else { at.mm };
+        let [from_mm, to_mm] = [from, to].map(|at| at.map(mm));
         View { title: self.title.clone(), width, height, from_mm, to_mm, magnify, unit }
     }
 }

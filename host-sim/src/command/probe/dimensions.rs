@@ -8,12 +8,14 @@ use truepath_correction::verification::{
 };
 use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::length::between;
 use truepath_ground::output::OutputFile;
 use truepath_ground::units::nm;
 use truepath_job::job::JobFile;
 
 use super::options::Options;
 use crate::terminal::Terminal;
+use truepath_report::next::shown;
 
 /// Most dimensions of a sheet.
 const MOST: u32 = 64;
@@ -24,10 +26,10 @@ const MOST_MM: f64 = 4000.0;
 /// into.
 pub(super) fn main(options: &Options, output: &FilePath, terminal: &Terminal) -> Result<(), Failure> {
     let plan = terminal.watch("choosing dimensions", |progress| run(options, output, progress))?;
-    terminal.tell(&plan, || words(&plan, output))
+    terminal.tell(&plan, || words(&plan, &options.job, output))
 }
 
-fn words(plan: &DimensionPlan, output: &FilePath) -> String {
+fn words(plan: &DimensionPlan, job: &FilePath, output: &FilePath) -> String {
     let (unit, name) = (plan.unit, plan.unit.name());
     let mut text = format!(" no.                                        Z {name}  nominal {name}\n");
     for (k, d) in plan.dimensions.iter().enumerate() {
@@ -55,9 +57,16 @@ fn words(plan: &DimensionPlan, output: &FilePath) -> String {
         text,
         "\npredicted wall, one sigma: {before:.4} {name} before the dimensions, {after:.4} {name} after"
     );
-    for path in files(output) {
-        let _ = writeln!(text, "written to {}", path.display());
-    }
+    let [sheet, typed] = files(output);
+    let _ = writeln!(text, "written to {}\nwritten to {}", sheet.display(), typed.display());
+    let _ = writeln!(
+        text,
+        "next: print {}, measure the milled part, type the readings into {}, and\n  truepath correct {} --dimensions {} -o DIR",
+        sheet.display(),
+        typed.display(),
+        shown(job),
+        shown(&typed)
+    );
     text
 }
 
@@ -78,16 +87,15 @@ fn run(options: &Options, output: &FilePath, progress: &mut dyn FnMut(f64)) -> R
         None => options.instrument.uncertainty(),
         Some(mm) if mm > 0.0 && mm <= 1.0 => nm(mm),
         Some(mm) => {
-            let found = format!("--uncertainty is {mm}");
-            let help = "give what a reading stays within, in millimetres: 0.03 for a calliper";
-            return Err(InputError::new(C001, found, "above 0, up to 1 mm", help).into());
+            let found = format!("--uncertainty is {mm} mm");
+            let help = "give what a reading stays within: 0.03mm or 0.001in for a calliper";
+            return Err(InputError::new(C001, found, format!("above 0, {}", between(0.0, 1.0)), help).into());
         }
     };
     if let Some(mm) = options.reach.filter(|mm| !(*mm > 0.0 && *mm <= MOST_MM)) {
-        let help = "give the largest dimension that the instrument takes, in millimetres: 150 for a calliper";
-        return Err(
-            InputError::new(C001, format!("--reach is {mm}"), format!("above 0, up to {MOST_MM} mm"), help).into()
-        );
+        let help = "give the largest dimension that the instrument takes: 150mm or 6in for a calliper";
+        let expected = format!("above 0, {}", between(0.0, MOST_MM));
+        return Err(InputError::new(C001, format!("--reach is {mm} mm"), expected, help).into());
     }
     let paths = files(output);
     // Targets that may not be written are refused before the work.

@@ -13,8 +13,9 @@ use truepath_correction::verification::{
     Gained, KeptOff, Plan, ProbeDialect, STOCK_HEIGHTS, Settings, Unknown, plan_every, plan_stock, write,
 };
 use truepath_ground::codes::C001;
+use truepath_ground::count::counted;
 use truepath_ground::diagnostics::{Failure, InputError};
-use truepath_ground::length::Unit;
+use truepath_ground::length::{Remark, Unit};
 use truepath_ground::output::OutputFile;
 use truepath_job::job::{Assumed, JobFile};
 use truepath_job::pass::Pass;
@@ -48,7 +49,14 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
         };
         format!("written to {}\n{next}", out.display())
     });
-    terminal.tell(&report, || words(&report) + &written.unwrap_or_default())
+    let listed = || match options.next || options.stock {
+        true => String::new(),
+        false => format!(
+            "next: -o FILE writes the program that touches them; or touch them with one of your own, and\n  truepath correct {} --probe FILE -o DIR\n",
+            shown(&options.job)
+        ),
+    };
+    terminal.tell(&report, || words(&report) + &written.unwrap_or_else(listed))
 }
 
 fn words(report: &Report) -> String {
@@ -108,7 +116,7 @@ fn words(report: &Report) -> String {
         text += "\nthe stock is touched, before the finishing pass: name the results in stock.probe of the job\n";
     }
     for kept in &report.kept_off {
-        let _ = writeln!(text, "kept off {} places {}", kept.places, kept.words);
+        let _ = writeln!(text, "kept off {} {}", counted(kept.places, "place"), kept.words);
     }
     let _ = writeln!(
         text,
@@ -202,7 +210,7 @@ pub struct Report {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub assumed: Vec<Assumed>,
     /// What the user should know.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Remark>,
 }
 
 /// Plans and writes. `progress` is told the share done, 0…1.

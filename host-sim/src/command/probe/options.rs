@@ -21,8 +21,8 @@ pub struct Options {
     /// The control the program is for; without it that of the part's program, where job or program show it.
     #[arg(long, value_enum, requires = "output")]
     pub dialect: Option<ProbeDialect>,
-    /// The program to write.
-    #[arg(short, long, value_name = "FILE", required_unless_present = "next")]
+    /// The program to write; without it the places are listed alone.
+    #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Further places, given what was measured: those after which the worst place of the corrected wall is most certain.
     #[arg(long, requires = "measured")]

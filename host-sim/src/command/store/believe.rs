@@ -23,9 +23,10 @@ pub(in crate::command) fn believing(mut passes: Vec<Pass>, given: Option<&str>) 
     if let Err(failure) = told {
         for pass in &mut passes {
             pass.core.believed = None;
-            pass.warnings.push(format!(
+            let said = format!(
                 "[store] prior = \"shop\", and the store does not answer: {failure}. The fit begins at what the job states"
-            ));
+            );
+            pass.warnings.push(said.into());
         }
     }
     passes
@@ -37,12 +38,13 @@ fn believe(pass: &mut Pass, job: &JobFile, place: &Place, store: &mut Store) -> 
     let setting = setting(&names, stickout_nm, &facts)?;
     let (shop, newest) = store.shop(&facts, &setting)?;
     let believed = shop.believed(&setting, &pass.core.stated_prior(WallLaw::Helical));
-    pass.warnings.push(match (&believed, newest) {
+    let said = match (&believed, newest) {
         (Some((_, jobs)), Some(newest)) => format!(
             "the fit begins at what {jobs} other parts of the store {place} say of machine, cutter and material (estimates up to {newest})"
         ),
         _ => format!("the store {place} knows nothing of this machine, cutter or material that the job does not"),
-    });
+    };
+    pass.warnings.push(said.into());
     pass.core.believed = believed.map(|(prior, _)| prior);
     Ok(())
 }

@@ -13,32 +13,43 @@ use truepath_store::{Added, PartFolder, Place, Setup, Store};
 use super::chosen::place;
 use crate::terminal::Terminal;
 
-/// Puts the part of a folder into the store that is named, if any is.
+/// Puts the part of a folder into the store that is named, if any is, and prints what came of it.
 pub(in crate::command) fn keep(
-    (job, given): (&FilePath, Option<&str>),
+    named: (&FilePath, Option<&str>),
     output: &FilePath,
     by: &'static str,
     terminal: &Terminal,
 ) {
-    // It was read a moment ago; if it has gone since, only the command line and the environment name a store.
-    let job = JobFile::read(job).ok();
-    let Ok(place) = place(given, job.as_ref()) else { return };
-    match stored(&place, job.as_ref(), output, by) {
-        Ok(None) => terminal.note(&format!(
-            "nothing went into the store {place}: a second pass and planned passes have no history there"
-        )),
-        Ok(Some(added)) => {
-            for one in added {
-                let new = if one.known { "was already" } else { "is" };
-                let (part, history) = (one.last_part, one.history);
-                terminal.note(&format!("part {part} {new} in the store {place}, as history {history}"));
-            }
-        }
+    match kept(named, output, by) {
+        Ok(notes) => notes.iter().for_each(|note| terminal.note(note)),
         Err(failure) => terminal.warn(&format!(
             "the part is not in the store: {failure}. Nothing else is wrong: its folder is written, and truepath store import {} takes it later",
             output.display()
         )),
     }
+}
+
+/// Puts the part of a folder into the store that is named; a sentence for each history, none where no store is named.
+///
+/// # Errors
+/// Whatever is wrong with the store; the folder stays as it is.
+pub fn kept(
+    (job, given): (&FilePath, Option<&str>),
+    output: &FilePath,
+    by: &'static str,
+) -> Result<Vec<String>, Failure> {
+    // It was read a moment ago; if it has gone since, only the command line and the environment name a store.
+    let job = JobFile::read(job).ok();
+    let Ok(place) = place(given, job.as_ref()) else { return Ok(Vec::new()) };
+    let Some(added) = stored(&place, job.as_ref(), output, by)? else {
+        let why = "a second pass and planned passes have no history there";
+        return Ok(vec![format!("nothing went into the store {place}: {why}")]);
+    };
+    let said = |one: &Added| {
+        let new = if one.known { "was already" } else { "is" };
+        format!("part {} {new} in the store {place}, as history {}", one.last_part, one.history)
+    };
+    Ok(added.iter().map(said).collect())
 }
 
 fn stored(

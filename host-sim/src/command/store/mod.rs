@@ -17,6 +17,7 @@ use truepath_store::codes::{O005, O006};
 use truepath_store::{Added, Choice, Migrated, PartFolder, Place, Setup, Store};
 
 use self::chosen::place;
+pub use self::keep::kept;
 use self::words::{Exported, Imported};
 use super::correction_files::{CONTOURS, HISTORY, contour_place};
 use crate::terminal::Terminal;

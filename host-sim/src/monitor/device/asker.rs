@@ -98,12 +98,13 @@ fn look<W: Wire>(
     let status = client.status()?;
     let round_trip = asked.elapsed();
     let (dropped, samples) = samples(client)?;
+    let timing = client.timing()?.map(Box::new);
     let (dropped, samples) = if seen.fresh { (0, vec![]) } else { (dropped, samples) };
     let at = start.elapsed();
     let changed = seen.boot.is_none_or(|(image, uptime)| image != status.active || status.uptime_us < uptime);
     let known = changed || seen.fresh;
     (seen.fresh, seen.boot) = (false, Some((status.active, status.uptime_us)));
-    let look = Message::Look { at, status: Box::new(status), dropped, samples, round_trip };
+    let look = Message::Look { at, status: Box::new(status), dropped, samples, timing, round_trip };
     if tell.send(Told::News(look)).is_err() {
         return Ok(ControlFlow::Break(()));
     }

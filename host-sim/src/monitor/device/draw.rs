@@ -9,15 +9,19 @@ use ratatui::widgets::{Block, Borders, Clear, Gauge, Paragraph, Wrap};
 
 use super::compact;
 use super::model::ViewModel;
-use super::texts::{HELP, KEYS, faults, flags, identity, image, link, place, place_share};
+use super::texts::{HELP, KEYS, faults, flags, identity, image, link, place, place_share, timing};
 use crate::monitor::counts;
 use crate::monitor::state::Shown;
 use crate::monitor::theme::{Theme, Tone};
+use crate::monitor::timing::histograms;
 use crate::monitor::trend::{Trend, scale};
 use crate::monitor::wording::{micrometres, time};
 
 /// Smallest terminal for it.
 const LEAST: (u16, u16) = (60, 20);
+/// Rows of a terminal that has room for the histograms of the timing as well, and rows of those.
+const ROOMY: u16 = 36;
+const BARS: u16 = 5;
 /// Columns of the block with the state.
 const BLOCK: u16 = 20;
 
@@ -30,10 +34,13 @@ pub fn draw(frame: &mut Frame<'_>, model: &ViewModel, now: Duration, theme: Them
         let rows = model.counters(now);
         let table = counts::height(rows.len(), area.width) + 1;
         // The faults one by one where there is room; their sum is in the table.
-        let [state_rows, fault_rows] = [if area.height < 24 { 4 } else { 5 }, u16::from(area.height > 24)];
+        let state_rows = if area.height < 24 { 4 } else { 5 };
+        let [fault_rows, timing_rows] = [24, 21].map(|least| u16::from(area.height > least));
+        let times = model.timing.as_ref().filter(|_| area.height >= ROOMY);
+        let bars = if times.is_some() { BARS } else { 0 };
         let heights = [2, state_rows, 1, 1].map(Constraint::Length);
         let below = [Constraint::Min(3), Constraint::Length(table)].into_iter();
-        let below = below.chain([fault_rows, 1, 1].map(Constraint::Length));
+        let below = below.chain([fault_rows, timing_rows, bars, 1, 1].map(Constraint::Length));
         let places = Layout::vertical(heights.into_iter().chain(below)).split(area);
         head(frame, places[0], model, now, theme);
         state(frame, places[1], model, now, theme);
@@ -46,8 +53,14 @@ pub fn draw(frame: &mut Frame<'_>, model: &ViewModel, now: Duration, theme: Them
         if fault_rows > 0 {
             frame.render_widget(faults(model, now, theme), places[6]);
         }
-        frame.render_widget(link(model, now, theme), places[7]);
-        frame.render_widget(Line::styled(KEYS, theme.faint()), places[8]);
+        if timing_rows > 0 {
+            frame.render_widget(timing(model, now, theme), places[7]);
+        }
+        if let Some(times) = times {
+            histograms(frame, places[8], times, theme);
+        }
+        frame.render_widget(link(model, now, theme), places[9]);
+        frame.render_widget(Line::styled(KEYS, theme.faint()), places[10]);
     }
     if model.help {
         help(frame, area, theme);

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use truepath_core::image::{Image, NODE_BYTES, SIGNATURE_BYTES, image_bytes};
-use truepath_core::link::{DeviceStatus, Slot, TraceSample};
+use truepath_core::link::{DeviceStatus, Slot, Timing, TraceSample};
 use truepath_core::rewrite::{Reason, Status};
 
 use crate::coprocessor::Info;
@@ -50,6 +50,8 @@ pub enum Message {
         dropped: u32,
         /// Samples since the look before. Empty after a connection was made: their age is not known then.
         samples: Vec<TraceSample>,
+        /// How regularly setpoints arrive; nothing of a firmware that does not count it.
+        timing: Option<Box<Timing>>,
         /// Time from question to answer.
         round_trip: Duration,
     },
@@ -97,6 +99,7 @@ pub struct ViewModel {
     flagged: std::collections::VecDeque<(Duration, Status)>,
     pub(super) dropped: u64,
     pub(super) round_trip: Duration,
+    pub(super) timing: Option<Timing>,
     pub(super) help: bool,
     known: Option<Known>,
     every: Duration,
@@ -121,6 +124,7 @@ impl ViewModel {
             flagged: std::collections::VecDeque::new(),
             dropped: 0,
             round_trip: Duration::ZERO,
+            timing: None,
             help: false,
             known,
             every,
@@ -138,7 +142,7 @@ impl ViewModel {
         match message {
             Message::Identity { info, slots } => self.identity = Some((*info, slots)),
             Message::Silent { why } => self.failure = Some(why),
-            Message::Look { at, status, dropped, samples, round_trip } => {
+            Message::Look { at, status, dropped, samples, timing, round_trip } => {
                 if self.status.is_some_and(|before| status.uptime_us < before.uptime_us) {
                     self.restarted_at = Some(at);
                 }
@@ -153,6 +157,7 @@ impl ViewModel {
                     self.flagged.pop_front();
                 }
                 self.dropped += u64::from(dropped);
+                self.timing = timing.map(|timing| *timing);
                 self.growth.take(at, counters(&status));
                 self.round_trips.push_back((at, round_trip));
                 while self.round_trips.front().is_some_and(|(then, _)| *then + WORST_OF < at) {

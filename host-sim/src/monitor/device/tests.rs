@@ -88,7 +88,8 @@ fn milled(mode: Mode, reason: Reason, bits: u16, known: bool) -> (ViewModel, Dur
         let samples = if look == 0 { vec![] } else { (0..25).map(sample).collect() };
         let status = Box::new(status(mode, reason, 700 + u64::from(look / 5), counters));
         let round_trip = Duration::from_micros(2_100);
-        model.update(Message::Look { at, status, dropped: 0, samples, round_trip });
+        let timing = Some(Box::new(pictures::timing()));
+        model.update(Message::Look { at, status, dropped: 0, samples, timing, round_trip });
     }
     (model, EVERY * 75 + Duration::from_millis(100))
 }
@@ -212,7 +213,7 @@ fn a_device_that_falls_silent_has_no_value_of_now() {
     // It comes back.
     let status = status(Mode::Bypass, Reason::None, 2, Counters::default());
     let (status, round_trip) = (Box::new(status), Duration::ZERO);
-    model.update(Message::Look { at: later, status, dropped: 0, samples: vec![], round_trip });
+    model.update(Message::Look { at: later, status, dropped: 0, samples: vec![], timing: None, round_trip });
     let shown = text(&picture(&model, later, [80, 24], true));
     assert!(shown.contains("P A S S") && shown.contains("RESTARTED"), "{shown}");
 }
@@ -229,7 +230,7 @@ fn a_pause_holds_the_curves_and_nothing_else() {
     let later = now + Duration::from_secs(1);
     let samples = vec![TraceSample { correction_nm: [-150_000, 0], mode: Mode::Fault, ..TraceSample::default() }; 20];
     let status = Box::new(status(Mode::Fault, Reason::EmergencyStop, 720, Counters::default()));
-    model.update(Message::Look { at: later, status, dropped: 0, samples, round_trip: Duration::ZERO });
+    model.update(Message::Look { at: later, status, dropped: 0, samples, timing: None, round_trip: Duration::ZERO });
     assert_eq!(curves(&model, later), before);
     let shown = text(&picture(&model, later, [80, 24], true));
     assert!(shown.contains("PAUSED") && shown.contains("F A U L T") && shown.contains("-150.0"), "{shown}");
@@ -270,6 +271,7 @@ fn place_and_clamp_are_those_of_the_active_image() {
         status: Box::new(other),
         dropped: 0,
         samples: vec![],
+        timing: None,
         round_trip: Duration::ZERO,
     });
     assert_eq!((model.nodes(), model.clamp_nm()), (None, None));
@@ -281,7 +283,7 @@ fn a_flag_of_a_single_sample_is_shown_for_as_long_as_it_is_of_now() {
     let mut look = |at, bits: &[u16]| {
         let samples = bits.iter().map(|bits| TraceSample { status: Status(*bits), ..TraceSample::default() }).collect();
         let status = Box::new(status(Mode::Active, Reason::None, 720, Counters::default()));
-        model.update(Message::Look { at, status, dropped: 0, samples, round_trip: Duration::ZERO });
+        model.update(Message::Look { at, status, dropped: 0, samples, timing: None, round_trip: Duration::ZERO });
         text(&picture(&model, at, [80, 24], true))
     };
     assert!(look(now, &[0, Status::SATURATED.0, 0]).contains("SATURATED"));

@@ -9,13 +9,14 @@ use truepath_core::rewrite::Status;
 use super::model::ViewModel;
 use crate::monitor::state::Shown;
 use crate::monitor::theme::{Theme, Tone};
+use crate::monitor::timing;
 use crate::monitor::wording::{grouped, short_time, time};
 
 /// The line of keys.
 pub const KEYS: &str = "q leave   p pause the curves   c clear the view's history   ? help";
 
 /// What ? shows.
-pub const HELP: [&str; 17] = [
+pub const HELP: [&str; 20] = [
     "q, Esc, Ctrl-C   leave          p, space   pause the curves",
     "c   clear the view's history (not the device's counters)",
     "",
@@ -29,6 +30,9 @@ pub const HELP: [&str; 17] = [
     "",
     "▲       a counter of trouble that grew in the last 10 s",
     "worst   of the answers of the last 10 s",
+    "Setpoints  how far off the period they arrive: mean and standard",
+    "        deviation, extremes; time to an answer; since the reset",
+    "        (histograms: with 36 lines, or truepath device timing)",
     "node    place along the contour, of the correction image",
     "feed    feed per tooth over the nominal one",
     "X, Y    correction of the axes of the program's X and Y;",
@@ -125,6 +129,12 @@ pub fn faults(model: &ViewModel, now: Duration, theme: Theme) -> Line<'static> {
     let kept = model.status.is_some_and(|status| status.recording_frozen);
     let kept = if kept { "   (frames before the last one: truepath device record)" } else { "" };
     Line::from(vec![Span::styled(format!("Faults: {faults}"), theme.text(tone)), Span::styled(kept, theme.faint())])
+}
+
+/// How regularly setpoints arrive, and how fast they are answered.
+pub fn timing(model: &ViewModel, now: Duration, theme: Theme) -> Line<'static> {
+    let line = model.timing.as_ref().map_or_else(|| timing::none(theme), timing::line);
+    if model.lost_for(now).is_some() { line.style(theme.faint()) } else { line }
 }
 
 /// How the questions go.

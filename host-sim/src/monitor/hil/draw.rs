@@ -12,7 +12,11 @@ use truepath_core::rewrite::{Mode, Reason};
 use super::model::{Model, RoundTrips};
 use crate::monitor::state::Shown;
 use crate::monitor::theme::{Theme, Tone};
+use crate::monitor::timing;
 use crate::monitor::wording::{grouped, rate, short_time, time};
+
+/// Rows of the curve at the least.
+const LEAST_CURVE: u16 = 3;
 
 /// How a run is to end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,15 +39,20 @@ pub fn draw(
 ) {
     let area = frame.area();
     let lines = lines(model, trips, now, theme);
-    // Gauge and keys always; the curve gets what is left, if that is enough to see anything.
+    // Gauge and keys always; the histograms and the curve get what is left, if that is enough to see anything.
     let room = area.height.saturating_sub(2);
     let shown = (lines.len() as u16).min(room);
-    let curve = room - shown;
-    let heights = [1, shown, if curve >= 3 { curve } else { 0 }, 1].map(Constraint::Length);
-    let [top, middle, below, last] = Layout::vertical(heights).areas(area);
+    let left = room - shown;
+    let bars = if model.timing.is_some() { timing::rows(left) } else { 0 };
+    let curve = left - bars;
+    let heights = [1, shown, bars, if curve >= LEAST_CURVE { curve } else { 0 }, 1].map(Constraint::Length);
+    let [top, middle, times, below, last] = Layout::vertical(heights).areas(area);
     gauge(frame, top, model, theme);
     for (row, line) in (0..middle.height).zip(lines) {
         frame.render_widget(line, Rect { y: middle.y + row, height: 1, ..middle });
+    }
+    if let (Some(timing), true) = (&model.timing, times.height > 0) {
+        timing::histograms(frame, times, timing, theme);
     }
     if below.height > 0 {
         curve_of(frame, below, model, theme);
@@ -90,6 +99,10 @@ fn lines(model: &Model, trips: Option<&RoundTrips>, now: Duration, theme: Theme)
         },
     );
     lines.push(Line::from(trips));
+    // Nothing is known of the timing before the first batch.
+    if model.answers > 0 {
+        lines.push(model.timing.as_ref().map_or_else(|| timing::none(theme), timing::line));
+    }
     lines.push(Line::from(format!("{}: {}", model.board, model.stage)));
     lines.push(Line::from(format!(
         "{} parts armed, largest correction {:.1} µm",

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use hdrhistogram::Histogram;
 use truepath_bench::{Injected, RunStatus};
-use truepath_core::link::Counters;
+use truepath_core::link::{Counters, Timing};
 use truepath_core::rewrite::Output;
 
 use crate::monitor::growth::Growth;
@@ -34,6 +34,8 @@ pub struct Model {
     pub armed: u64,
     /// Largest correction, nm.
     pub largest_nm: i64,
+    /// How regularly setpoints arrive at the board; nothing of a firmware that does not time them.
+    pub timing: Option<Timing>,
     /// Time the board took.
     pub elapsed: Duration,
     /// The last answer that was compared.
@@ -61,6 +63,7 @@ impl Model {
             modes: [0; 6],
             armed: 0,
             largest_nm: 0,
+            timing: None,
             elapsed: Duration::ZERO,
             latest: None,
             trail_nm: VecDeque::new(),
@@ -74,6 +77,7 @@ impl Model {
         self.stage = "setpoints under way".to_owned();
         (self.injected, self.counters, self.answers) = (*status.injected, *status.counters, status.answers);
         (self.modes, self.armed, self.largest_nm) = (*status.modes, status.armed, status.largest_nm);
+        self.timing = status.timing.copied();
         (self.elapsed, self.arrived_before, self.since) = (status.elapsed, arrived, 0);
         self.latest = status.trail.last().copied().or(self.latest);
         for output in status.trail.iter().skip(status.trail.len().saturating_sub(MOST)) {

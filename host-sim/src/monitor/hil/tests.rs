@@ -44,6 +44,7 @@ fn under_way() -> (Model, RoundTrips, Duration) {
         armed: 3,
         largest_nm: 180_123,
         elapsed: Duration::from_millis(8_200),
+        timing: Some(&pictures::timing()),
         trail: &trail,
     };
     for k in 0..=80u64 {

@@ -140,7 +140,7 @@ fn corrected(drawn: &ShopCase, shop: &Shop) -> Result<Corrected, Failure> {
             .warnings
             .iter()
             .find(|w| w.contains(CONTRADICTED))
-            .cloned()
+            .map(ToString::to_string)
             .unwrap_or_default(),
         is_kept: core.prior != stated && core.law == WallLaw::Helical,
     })

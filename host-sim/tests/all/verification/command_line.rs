@@ -50,7 +50,10 @@ fn a_wrong_choice_is_named_and_nothing_is_written() {
     };
     let unknown = call(&["--dialect", "heidenhain"]);
     assert!(unknown.contains("heidenhain") && unknown.contains("haas, fanuc, linuxcnc, grbl"), "{unknown}");
-    assert!(call(&["--dialect", "grbl", "--clearance", "0.2"]).contains("--clearance is 0.2; expected 1 to 50 mm"));
+    assert!(
+        call(&["--dialect", "grbl", "--clearance", "0.2"])
+            .contains("--clearance is 0.2 mm; expected 1 to 50 mm (0.0394 to 1.96 in)")
+    );
     assert!(call(&["--dialect", "grbl", "--safe-z", "-3"]).contains("--safe-z -3 is not above the wall"));
     assert!(call(&["--dialect", "grbl", "--probe-tool", "9"]).contains("grbl changes no tools"));
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2, "job and program");

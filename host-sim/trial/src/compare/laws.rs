@@ -7,6 +7,7 @@ use truepath_core::job::{self, LawName};
 use truepath_core::probe::Contact;
 use truepath_core::units::{Offset, Real};
 use truepath_correction::correction::{Buffers, Identification};
+use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 use truepath_job::pass::Pass;
 
@@ -33,7 +34,7 @@ pub fn candidates(
 ) -> Vec<Candidate> {
     let blank = vec![Node::default(); machine.path.count()];
     let mut out = vec![Candidate { law: "none", title: "no correction", nodes: blank, remark: String::new() }];
-    out.push(constant(machine, contacts));
+    out.push(constant(machine, contacts, pass.unit()));
     for (name, title, remark) in [
         (LawName::Mirror, "first-order mirror", "the deflection of the uncorrected cut reversed"),
         (LawName::Paper, "paper of 2023", ""),
@@ -49,12 +50,12 @@ pub fn candidates(
 }
 
 /// The best constant: the mean of the probed errors as a wear offset, towards the wall everywhere.
-fn constant(machine: &Loop, contacts: &[Contact]) -> Candidate {
+fn constant(machine: &Loop, contacts: &[Contact], unit: Unit) -> Candidate {
     let sum: Offset = contacts.iter().fold(Offset::ZERO, |sum, contact| sum + contact.error);
     let mean = sum.scaled(Real::ratio(1, contacts.len().max(1) as i64));
     let samples = machine.path.samples().iter().skip(machine.path.first()).take(machine.path.count());
     let nodes = samples.map(|sample| Node { chip: Vector::ZERO, edge: sample.normal.times(mean) }).collect();
-    let remark = format!("wear offset of {:.4} mm, the mean of the probed errors", mm(mean));
+    let remark = format!("wear offset of {:.4} {}, the mean of the probed errors", unit.of(mm(mean)), unit.name());
     Candidate { law: "constant", title: "constant offset", nodes, remark }
 }
 

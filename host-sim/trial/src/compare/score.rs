@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use truepath_core::units::Offset;
 use truepath_correction::surface::causes::MeasuredCauses;
 use truepath_correction::surface::expected::Surface;
+use truepath_ground::length::Unit;
 use truepath_ground::rows::p95;
 use truepath_ground::units::mm;
 
@@ -103,13 +104,13 @@ pub fn row(
     walls: Result<&Walls, &str>,
     none_mm: Option<f64>,
     trim_mm: f64,
-    clamp: Offset,
+    (clamp, unit): (Offset, Unit),
 ) -> Row {
     let largest = truepath_core::job::largest(&candidate.nodes);
     let beyond_clamp = largest > clamp;
     let mut remarks = vec![candidate.remark.clone()];
     if beyond_clamp {
-        remarks.push(format!("beyond the clamp of {} mm: correct would refuse it", mm(clamp)));
+        remarks.push(format!("beyond the clamp of {} {}: correct would refuse it", unit.of(mm(clamp)), unit.name()));
     }
     let mut row = Row {
         law: candidate.law,

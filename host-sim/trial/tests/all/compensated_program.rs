@@ -5,6 +5,7 @@ use std::path::Path;
 use truepath_core::gcode::Options;
 use truepath_correction::correct::{CorrectedPass, correct_pass};
 use truepath_ground::diagnostics::{Failure, Form, Source};
+use truepath_ground::length::Unit;
 use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, read_blocks};
@@ -57,7 +58,7 @@ fn a_compensated_program_is_corrected_as_the_path_of_the_centre() {
         .map(|(program, compensation)| corrected(&shown(pass(program, &format!("compensation = \"{compensation}\"")))));
     let difference = drawn.summary.program.unwrap();
     assert!(difference.compensation_taken_out && difference.largest_shift.mm > 0.005, "{difference:?}");
-    assert!(difference.text("part.nc").contains("taken out of the contour"));
+    assert!(difference.text("part.nc", Unit::Millimetre).contains("taken out of the contour"));
     let text = String::from_utf8(drawn.program.unwrap()).unwrap();
     assert!(!text.contains("G41") && text.contains("\nG40 ") && text.contains("OF THE CUTTER CENTRE"), "{text}");
     let read = |text: &[u8]| shown(read_blocks(&Source::new("corrected.nc", text.to_vec()), Options::default())).0;

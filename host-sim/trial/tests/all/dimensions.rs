@@ -10,6 +10,7 @@ use truepath_correction::verification::{
     DimensionPlan, DimensionSettings, PlannedDimension, plan_dimensions, table, unseparated_contours,
 };
 use truepath_ground::diagnostics::{Failure, Form, Source};
+use truepath_ground::length::Unit;
 use truepath_job::dimension::Instrument;
 use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
@@ -168,7 +169,7 @@ fn left_open(measured: &[(Pass, Measurement)]) -> Vec<String> {
         .collect();
     let identified = shown(identify_together(&cuts, |_| ())).remove(0);
     let walls: Vec<_> = cuts.iter().map(|cut| (cut.path.with_law(identified.law()), cut.measurement)).collect();
-    unseparated_contours(&walls, &identified)
+    unseparated_contours(&walls, &identified, Unit::Millimetre).iter().map(ToString::to_string).collect()
 }
 
 #[test]

@@ -61,7 +61,8 @@ fn a_lot_that_cuts_harder_is_learned_from_the_first_part_that_is_touched() {
             }
             Some(known) => {
                 let learned = shown(learn(&pass, &known, &measurement, &[], &[Route::Program], &mut |_| ()));
-                let said = learned.verdict.remarks().join("\n");
+                let said: Vec<&str> = learned.verdict.remarks().iter().map(|said| &**said).collect();
+                let said = said.join("\n");
                 let (change, is_another_lot) = (learned.verdict.force_change, force > 1.1);
                 println!("{force}: {change:.3}; {said}");
                 assert!(!learned.verdict.rolled_back, "{said}");

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
 
+use super::registers;
 use super::thumb::{Effect, decode};
 use crate::step::Failure;
 
@@ -15,9 +16,9 @@ pub struct Function {
     pub name: String,
     /// Bytes of its stack frame; `None` when nobody knows.
     pub frame: Option<u32>,
-    /// Functions it calls or jumps to, by address.
+    /// Functions it calls or jumps to, by address; those among them that it calls through a register it loaded itself.
     pub calls: BTreeSet<u32>,
-    /// Whether it calls through a register as well.
+    /// Whether it also calls through a register whose value does not follow from its own code.
     pub indirect: bool,
 }
 
@@ -80,10 +81,17 @@ impl Graph {
     }
 
     fn scan(&mut self, start: u32, end: u32, base: u32, data: &[u8], marks: &BTreeMap<u32, bool>, frame: Option<u32>) {
+        let is_code = |at: u32| marks.range(..=at).next_back().is_none_or(|(_, &code)| code);
+        let word = |at: u32| {
+            let place = at.checked_sub(base)? as usize;
+            Some(u32::from_le_bytes(*data.get(place..)?.first_chunk()?))
+        };
+        let code = data.get((start - base) as usize..(end - base) as usize).unwrap_or(&[]);
+        let through = registers::calls(code, start, is_code, word);
         let (mut targets, mut indirect, mut pushed, mut unknown) = (BTreeSet::new(), false, 0, false);
         let mut at = start;
         while at < end {
-            if marks.range(..=at).next_back().is_some_and(|(_, &code)| !code) {
+            if !is_code(at) {
                 at += 2;
                 continue;
             }
@@ -97,7 +105,13 @@ impl Graph {
                 Effect::Branch(to) if to < start || to >= end => {
                     targets.insert(to);
                 }
-                Effect::Indirect => indirect = true,
+                Effect::Indirect(_) => match through.get(&at).map(|to| to & !1) {
+                    // The beginning of a function, or it is no address of one.
+                    Some(to) if self.functions.contains_key(&to) => {
+                        targets.insert(to);
+                    }
+                    _ => indirect = true,
+                },
                 Effect::Push(bytes) => pushed += bytes,
                 Effect::PushUnknown => unknown = true,
                 Effect::Branch(_) | Effect::Other => {}

@@ -14,6 +14,19 @@ pub const fn levels(board: Board) -> &'static [Level] {
     }
 }
 
+/// The same of its loader, which unmasks no interrupt.
+pub const fn loader_levels(board: Board) -> &'static [Level] {
+    match board {
+        Board::Virtual => &[THREAD_OF_LOADER, WATCHDOG, HARD_FAULT],
+        Board::NucleoH743 => &[THREAD_OF_LOADER, HARD_FAULT],
+    }
+}
+
+const THREAD_OF_LOADER: Level =
+    Level { name: "thread: swap, start of the program", roots: &["Reset"], exception: false };
+const WATCHDOG: Level = Level { name: "watchdog", roots: &["NonMaskableInt"], exception: true };
+const HARD_FAULT: Level = Level { name: "hard fault", roots: &["HardFault"], exception: true };
+
 /// Priorities of the virtual board, from the thread up; see its `interrupts.rs`.
 const VIRTUAL: &[Level] = &[
     Level { name: "thread: start, batches, on-board correction", roots: &["Reset"], exception: false },
@@ -29,8 +42,8 @@ const VIRTUAL: &[Level] = &[
         roots: &[HANDLERS[5], HANDLERS[6], HANDLERS[7]],
         exception: true,
     },
-    Level { name: "watchdog", roots: &["NonMaskableInt"], exception: true },
-    Level { name: "hard fault", roots: &["HardFault"], exception: true },
+    WATCHDOG,
+    HARD_FAULT,
 ];
 const HANDLERS: [&str; 8] = [
     "truepath_fw::board::virtual_board::interrupts::config_executor",
@@ -54,7 +67,7 @@ const NUCLEO_H743: &[Level] = &[
         exception: true,
     },
     Level { name: "priority 0: time", roots: &["TIM5"], exception: true },
-    Level { name: "hard fault", roots: &["HardFault"], exception: true },
+    HARD_FAULT,
 ];
 
 /// What a waker can do.
@@ -68,6 +81,14 @@ const QUIET: &str = ">::fit::<truepath_model::identify::observation::PredictionW
 /// Of a design, which reads the walls in order: under the guard, and of the whole.
 const DESIGN: &[&str] =
     &["guarded_design::<truepath_model::correct::reader::InOrder>::{closure#", "whole::designed::{closure#0}"];
+
+/// Components and coordinates of the ratio of an axis.
+const RATIOS: &[&str] = &[
+    "paper_transfer::{closure#1} as",
+    "paper_transfer::{closure#2} as",
+    "paper_transfer::{closure#3} as",
+    "paper_transfer::{closure#4} as",
+];
 
 /// What takes the steps of a program.
 const STEPS: &[&str] = &["contour::read::read_contour::{closure#"];
@@ -105,7 +126,10 @@ pub const INDIRECT: &[Indirect] = &[
     (">::linearise", &[FIT]),
     (FIT, &[QUIET, LAW, TOLD[0], TOLD[1]]),
     (LAW, TOLD),
-    ("correct::design::pass", &["design::design::<truepath_model::correct::reader::InOrder>::{closure#0}"]),
+    (
+        "correct::design::pass",
+        &["design::design::<truepath_model::correct::reader::InOrder>::{closure#0}::{closure#0}"],
+    ),
     ("correct::design::design", DESIGN),
     (DESIGN[0], &[DESIGN[1]]),
     (DESIGN[1], TOLD),
@@ -115,6 +139,11 @@ pub const INDIRECT: &[Indirect] = &[
     ("execute::Execution>::give", STEPS),
     // A device has no library of other programs.
     ("flow::program::Program>::file", &[]),
+    // What an image for size does not put into its callers.
+    ("paper_transfer::{closure#0}", RATIOS),
+    ("lexical::extent::is_statement::{closure#1}", &["is_statement::{closure#2} as", "is_statement::{closure#3} as"]),
+    // The program of a loader begins with a stack of its own.
+    ("board::start_program", &[]),
 ];
 
 /// Recursion on a board, with how often it goes around at the most.

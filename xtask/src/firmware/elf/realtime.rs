@@ -5,7 +5,7 @@ use crate::firmware::image::Image;
 use crate::step::Failure;
 use crate::toolchain::Toolchain;
 
-const IMAGE: Image = Image { bin: "realtime", features: "proof" };
+const IMAGE: Image = Image { bin: "realtime", features: "proof", for_size: false };
 /// The functions that lead into the setpoint path: without them the image proves nothing.
 const ROOTS: [&str; 3] = ["realtime_receive", "realtime_frame", "realtime_watch"];
 

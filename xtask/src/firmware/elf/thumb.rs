@@ -1,6 +1,6 @@
 //! As much of the Thumb-2 instruction set as a call graph needs: branches that leave a function, and the stack.
 //!
-//! Encodings: Arm DDI 0403 (ARMv7-M), A6.7.12 (B), A6.7.18 (BL), A6.7.19 (BLX), A6.7.20 (BX), A6.7.99 (PUSH), A6.7.134
+//! Encodings: Arm DDI 0403 (ARMv7-M), A6.7.12 (B), A6.7.18 (BL), A6.7.19 (BLX), A6.7.20 (BX), A6.7.21 (CBZ), A6.7.99 (PUSH), A6.7.134
 //! (SUB from SP), A6.7.163 (VPUSH). Everything else is passed over by its length.
 
 /// What an instruction does to the call graph or the stack.
@@ -10,8 +10,8 @@ pub enum Effect {
     Call(u32),
     /// A branch to an address.
     Branch(u32),
-    /// A call or branch through a register other than the link register.
-    Indirect,
+    /// A call or branch through a register other than the link register, by its number; `None` through memory.
+    Indirect(Option<usize>),
     /// The stack grows by so many bytes.
     Push(u32),
     /// The stack grows by what a register holds.
@@ -42,9 +42,11 @@ fn narrow(h: u32, address: u32) -> Effect {
         _ if h >> 12 == 0b1101 && h >> 9 != 0b110_1111 => to(sign((h & 0xFF) << 1, 9)),
         // B (T2).
         _ if h >> 11 == 0b11100 => to(sign((h & 0x7FF) << 1, 12)),
+        // CBZ, CBNZ.
+        _ if h & 0xF500 == 0xB100 => to(h >> 3 & 0x40 | h >> 2 & 0x3E),
         // BLX register, BX register.
-        _ if h & 0xFF87 == 0x4780 => Effect::Indirect,
-        _ if h & 0xFF87 == 0x4700 && h >> 3 & 0xF != 14 => Effect::Indirect,
+        _ if h & 0xFF87 == 0x4780 => Effect::Indirect(Some((h >> 3 & 0xF) as usize)),
+        _ if h & 0xFF87 == 0x4700 && h >> 3 & 0xF != 14 => Effect::Indirect(Some((h >> 3 & 0xF) as usize)),
         // PUSH (T1): eight low registers and the link register.
         _ if h & 0xFE00 == 0xB400 => Effect::Push(4 * (h & 0x1FF).count_ones()),
         // SUB SP, #imm7 (T1).
@@ -84,7 +86,7 @@ fn wide(a: u32, b: u32, address: u32) -> Effect {
         // SUB SP, SP, register (T1).
         _ if a & 0xFFEF == 0xEBAD && b >> 8 & 0xF == 13 => Effect::PushUnknown,
         // LDR PC, [register]: a branch through memory, unless it pops.
-        _ if a & 0xFFF0 == 0xF8D0 && b >> 12 == 15 => Effect::Indirect,
+        _ if a & 0xFFF0 == 0xF8D0 && b >> 12 == 15 => Effect::Indirect(None),
         _ => Effect::Other,
     }
 }
@@ -118,13 +120,15 @@ mod tests {
         assert_eq!(of(&[0x40, 0xF0, 0xFE, 0x81]), (Effect::Branch(0x1400), 4));
         assert_eq!(of(&[0x02, 0xD0]), (Effect::Branch(0x1008), 2));
         assert_eq!(of(&[0xFD, 0xE7]), (Effect::Branch(0x0FFE), 2));
+        assert_eq!(of(&[0x08, 0xB1]), (Effect::Branch(0x1006), 2)); // cbz r0, .+6
+        assert_eq!(of(&[0x00, 0xBB]), (Effect::Branch(0x1044), 2)); // cbnz r0, .+0x44
     }
 
     #[test]
     fn a_return_is_no_call_and_a_call_through_a_register_is_one() {
         assert_eq!(of(&[0x70, 0x47]).0, Effect::Other); // bx lr
-        assert_eq!(of(&[0x98, 0x47]).0, Effect::Indirect); // blx r3
-        assert_eq!(of(&[0x18, 0x47]).0, Effect::Indirect); // bx r3
+        assert_eq!(of(&[0x98, 0x47]).0, Effect::Indirect(Some(3))); // blx r3
+        assert_eq!(of(&[0x18, 0x47]).0, Effect::Indirect(Some(3))); // bx r3
         assert_eq!(of(&[0xF0, 0xBD]).0, Effect::Other); // pop {r4-r7, pc}
     }
 

@@ -1,4 +1,4 @@
-#![allow(clippy::arithmetic_side_effects, clippy::unwrap_used, clippy::panic)]
+#![allow(clippy::arithmetic_side_effects, clippy::indexing_slicing, clippy::unwrap_used, clippy::panic)]
 use proptest::prelude::*;
 
 use super::*;
@@ -97,6 +97,47 @@ fn limits_that_vanish_are_refused() {
     };
     assert!(matches!(Limits::new(&given, 1_000), Err(SettingsError::LimitVanishes { acceleration: 0, .. })));
     assert!(Limits::new(&given, 10).is_ok());
+}
+
+#[test]
+fn a_target_beyond_the_clamp_by_more_than_the_rounding_of_a_turn_is_told() {
+    let made = usual();
+    for sign in [1, -1] {
+        for (beyond, told) in [(-1, false), (0, false), (2, false), (3, true), (4, true), (1 << 29, true)] {
+            let mut axis = AxisState::default();
+            assert_eq!(made.step(&mut axis, sign * (made.clamp + beyond)), told, "{sign} {beyond}");
+        }
+    }
+}
+
+#[test]
+fn a_correction_at_rest_stays_there_and_is_on_its_target_until_the_target_moves() {
+    let made = usual();
+    for nm in [-400_000, 0, 3] {
+        let mut axis = AxisState::at_rest(FineOffset::from_bits(nm << 8));
+        for _ in 0..3 {
+            made.step(&mut axis, nm << 8);
+            assert_eq!(axis, AxisState::at_rest(FineOffset::from_bits(nm << 8)));
+            assert!(axis.is_on_target());
+        }
+        made.step(&mut axis, (nm + 100_000) << 8);
+        assert!(!axis.is_on_target() && !axis.is_at_rest_at_zero());
+    }
+}
+
+#[test]
+fn the_samples_of_the_table_are_the_inverse_of_the_braking_way() {
+    for made in [usual(), limits(4_000_000, 4_000_000_000, 3_000_000_000, 1_000), limits(900, 1_000, 8_000, 1_000)] {
+        let a = i64::from(made.acceleration);
+        for index in 0..=LAST_SAMPLE {
+            // Eight to an octave, the first eight exact.
+            let distance = if index < 8 { index as i64 } else { (8 + index as i64 % 8) << (index / 8 - 1) };
+            assert_eq!(sample(index), distance as u64);
+            let v = i64::from(braking_velocity(distance as u64, made.acceleration));
+            assert!(braking_way(v, a) <= distance && braking_way(v + 1, a) > distance, "{distance}: {v}");
+            assert_eq!(i64::from(made.allowed[index]), v.min(made.velocity.into()));
+        }
+    }
 }
 
 fn any_limits() -> impl Strategy<Value = Limits> {

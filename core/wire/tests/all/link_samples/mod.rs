@@ -4,10 +4,11 @@
 use truepath_wire::image::{Binding, DeviceClass, ImageError, KeyId, KeyRing, PublicKey, Rights, Role, SignatureError};
 use truepath_wire::link::{
     AccessError, ActiveImage, Ask, Change, ComputeFailure, Counters, Denial, DeviceKeys, DeviceSession, DeviceSetting,
-    DeviceSettings, DeviceSettingsError, DeviceStatus, Hello, Item, LogEntry, Progress, Reply, ResetCause, Slot, Stage,
-    TraceSample,
+    DeviceSettings, DeviceSettingsError, DeviceStatus, Firmware, Hello, Item, LogEntry, Progress, Reply, ResetCause,
+    Slot, Spread, Stage, Timing, TraceSample, UpdateStage, UpdateStatus,
 };
 use truepath_wire::rewrite::{ArmRequest, AxisMap, Frame, Identity, Mode, Place, Reason, Refusal, Status};
+use truepath_wire::update::{Label, UpdateError};
 
 pub const BINDING: Binding =
     Binding { program_crc: 0xcbf4_3926, feature: 1, pass: 2, tool: 4, tool_offset: 40, setup: 300 };
@@ -53,7 +54,18 @@ pub fn asks() -> Vec<(&'static str, Ask<'static>)> {
         Ask::Login { key: KeyId([7; 8]), role: Role::Operate, signature: [[1; 32], [2; 32]] },
         Ask::Logout,
         Ask::Session,
-        Ask::ProvisionAs { key: PublicKey([7; 32]), rights: Rights { role: Role::Operate, signs: false } },
+        Ask::ProvisionAs {
+            key: PublicKey([7; 32]),
+            rights: Rights { role: Role::Operate, signs: false, firmware: false },
+        },
+        Ask::Timing,
+        Ask::Update,
+        Ask::Install,
+        Ask::Confirm,
+        Ask::ProvisionFirmware {
+            key: PublicKey([7; 32]),
+            rights: Rights { role: Role::Operate, signs: false, firmware: false },
+        },
     ];
     all.into_iter().map(|ask| (ask_name(&ask), ask)).collect()
 }
@@ -91,6 +103,11 @@ fn ask_name(ask: &Ask<'_>) -> &'static str {
         Ask::Logout => "Logout",
         Ask::Session => "Session",
         Ask::ProvisionAs { .. } => "ProvisionAs",
+        Ask::Timing => "Timing",
+        Ask::Update => "Update",
+        Ask::Install => "Install",
+        Ask::Confirm => "Confirm",
+        Ask::ProvisionFirmware { .. } => "ProvisionFirmware",
     }
 }
 
@@ -148,7 +165,7 @@ pub fn keys() -> DeviceKeys {
 }
 
 pub fn session() -> DeviceSession {
-    let operator = Rights { role: Role::Operate, signs: false };
+    let operator = Rights { role: Role::Operate, signs: false, firmware: false };
     let rights = [Rights::default(), operator, Rights::default(), Rights::default()];
     DeviceSession { open: false, role: Role::Operate, key: Some(KeyId([7; 8])), refused: 3, rights }
 }
@@ -180,6 +197,28 @@ pub fn sample() -> TraceSample {
     }
 }
 
+pub fn timing() -> Timing {
+    let spread =
+        |mean_ns| Spread { count: 70_000, mean_ns, deviation_ns: 2_500, least_ns: -90_000, greatest_ns: 1_200_000 };
+    Timing {
+        period_ns: 1_000_000,
+        arrivals: spread(-40),
+        early: [9, 8, 7, 6, 5, 4, 3, 0, 0, 0, 0],
+        late: [60_000, 500, 400, 300, 200, 100, 0, 0, 0, 0, 1],
+        answers: spread(8_100),
+        taken: [0, 0, 3, 69_000, 900, 0, 0, 0, 0, 0, 0],
+        missed: 4_000,
+    }
+}
+
+pub fn update() -> UpdateStatus {
+    let key = KeyId([7; 8]);
+    let version = Label::of("0.2.0").unwrap();
+    let running = Firmware { version, name: 0x89ab_cdef, counter: 1_700_000_000, key };
+    let signs = [true, false, false, false];
+    UpdateStatus { stage: UpdateStage::Trial, most: 655_168, running: Some(running), least: 1_600_000_000, signs }
+}
+
 /// Every reply with its name.
 pub fn replies() -> Vec<(&'static str, Reply<'static>)> {
     let failure = ComputeFailure { stage: Stage::Probe, code: 12, line: 40, column: 3 };
@@ -200,6 +239,8 @@ pub fn replies() -> Vec<(&'static str, Reply<'static>)> {
         Reply::Challenge { device: [5; 12], nonce: [6; 32], random: true },
         Reply::LoggedIn { session: 0x0123_4567_89ab_cdef },
         Reply::Session(session()),
+        Reply::Timing(timing()),
+        Reply::Update(update()),
     ];
     all.into_iter().map(|reply| (reply_name(&reply), reply)).collect()
 }
@@ -221,6 +262,8 @@ fn reply_name(reply: &Reply<'_>) -> &'static str {
         Reply::Challenge { .. } => "Challenge",
         Reply::LoggedIn { .. } => "LoggedIn",
         Reply::Session(_) => "Session",
+        Reply::Timing(_) => "Timing",
+        Reply::Update(_) => "Update",
     }
 }
 
@@ -249,6 +292,7 @@ pub fn denials() -> Vec<(&'static str, Denial)> {
         Denial::NotPresent,
         Denial::KeysFull,
         Denial::Access(AccessError::Role { needed: Role::Engineer }),
+        Denial::Update(UpdateError::RolledBack { found: 1, least: 2 }),
     ];
     all.into_iter().map(|denial| (denial_name(&denial), denial)).collect()
 }
@@ -276,5 +320,6 @@ fn denial_name(denial: &Denial) -> &'static str {
         Denial::NotPresent => "NotPresent",
         Denial::KeysFull => "KeysFull",
         Denial::Access(_) => "Access",
+        Denial::Update(_) => "Update",
     }
 }

@@ -3,18 +3,21 @@
 use plotters::prelude::*;
 use truepath_chart::style::{AFTER, BEFORE, DARK, FONT, LIGHT, failed, legend};
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Unit;
 
 use super::profile::{Peak, Profile};
 
 /// Errors below this share of the tolerance are drawn at the bottom.
 const FLOOR: f64 = 1e-3;
 
-/// Draws the profile of a program.
+/// Draws the profile of a program, with lengths in a unit.
 ///
 /// # Errors
 /// Internal, when it cannot be drawn.
-pub fn picture(profile: &Profile, tolerance: f64) -> Result<Vec<u8>, Failure> {
-    let stretches: Vec<(f64, Peak)> = profile.stretches().collect();
+pub fn picture(profile: &Profile, tolerance_mm: f64, unit: Unit) -> Result<Vec<u8>, Failure> {
+    let tolerance = unit.said(tolerance_mm);
+    let said = |(at, peak): (f64, Peak)| (at, (unit.said(peak.0), unit.said(peak.1)));
+    let stretches: Vec<(f64, Peak)> = profile.stretches().map(said).collect();
     let width = profile.width() as f64;
     let end = stretches.last().map_or(1.0, |s| s.0 + width);
     let greatest = stretches.iter().fold(tolerance, |m, s| m.max(s.1.0));
@@ -40,7 +43,7 @@ pub fn picture(profile: &Profile, tolerance: f64) -> Result<Vec<u8>, Failure> {
             .light_line_style(WHITE)
             .bold_line_style(LIGHT)
             .x_desc(moves)
-            .y_desc("chord error, mm")
+            .y_desc(format!("chord error, {}", unit.name()))
             .x_label_formatter(&|v| format!("{v:.0}"))
             .y_label_formatter(&|v| format!("{v}"))
             .label_style((FONT, 13))
@@ -62,7 +65,7 @@ pub fn picture(profile: &Profile, tolerance: f64) -> Result<Vec<u8>, Failure> {
         chart
             .draw_series(DashedLineSeries::new([(1.0, tolerance), (end, tolerance)], 6, 4, DARK.stroke_width(2)))
             .map_err(failed)?
-            .label(format!("tolerance {tolerance} mm"))
+            .label(format!("tolerance {} {}", unit.of(tolerance_mm), unit.name()))
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], DARK.stroke_width(2)));
         legend(&mut chart, 1)?;
         root.present().map_err(failed)?;

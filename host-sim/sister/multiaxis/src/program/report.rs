@@ -1,6 +1,7 @@
 //! What a pass found, in bounded memory.
 
 use serde::Serialize;
+use truepath_core::gcode::Units;
 
 use super::notes::Notes;
 use super::profile::Profile;
@@ -119,6 +120,8 @@ pub struct Report {
     pub worst: Option<(u32, f64)>,
     /// Largest error allowed, mm.
     pub tolerance: f64,
+    /// The unit in which the program ends.
+    pub units: Units,
 }
 
 impl Report {
@@ -144,6 +147,7 @@ impl Report {
             notes: Notes::default(),
             worst: None,
             tolerance: settings.splitter.tolerance,
+            units: settings.units,
         }
     }
 

@@ -125,6 +125,7 @@ pub fn run<'s>(
     }
     pass.report.lines = u64::from(reader.number().saturating_sub(1));
     pass.report.bytes = reader.bytes();
+    pass.report.units = pass.state.units;
     Ok(Outcome::Done(Box::new(pass.report)))
 }
 
