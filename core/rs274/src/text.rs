@@ -109,6 +109,24 @@ impl<'a> Lines<'a> {
         let end = if memchr::memchr(b'\n', program).is_some() { b'\n' } else { b'\r' };
         Self { program, at, number: 0, end }
     }
+    /// Whether none of them has been taken.
+    pub(super) const fn is_at_start(&self) -> bool {
+        self.number == 0
+    }
+    /// Where a byte stands next in them.
+    pub(super) fn ahead(&self, byte: u8) -> Option<usize> {
+        let ahead = memchr::memchr(byte, self.program.get(self.at..)?)?;
+        Some(self.at.saturating_add(ahead))
+    }
+    /// Goes on with the line that holds a place further on.
+    pub(super) fn go_on_at(&mut self, place: usize) {
+        let passed = self.program.get(self.at..place).unwrap_or(&[]);
+        if let Some(last) = memchr::memrchr(self.end, passed) {
+            let ends = memchr::memchr_iter(self.end, passed).count();
+            self.number = self.number.saturating_add(u32::try_from(ends).unwrap_or(u32::MAX));
+            self.at = self.at.saturating_add(last).saturating_add(1);
+        }
+    }
     /// From a line of them on.
     pub(super) const fn again(&self, line: &Line<'a>) -> Self {
         Self { program: self.program, at: line.start, number: line.number.saturating_sub(1), end: self.end }

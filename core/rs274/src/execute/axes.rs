@@ -122,17 +122,21 @@ impl Execution<'_, '_, '_> {
             (to.x, to.y) = (Some(place.x), Some(place.y));
         }
         for axis in 0..3 {
-            let letter = self.letter(axis);
-            let Some(word) = block.use_word(letter) else {
-                continue;
-            };
-            let Some(place) = self.target(word, axis)? else {
-                return Err(self.error(GcodeErrorKind::PositionUnknown { axis: letter }, word.span));
-            };
-            to.set(axis, Some(place));
+            if let Some(word) = block.use_word(self.letter(axis)) {
+                self.lead(&mut to, axis, word)?;
+            }
         }
         self.move_auxiliary(block)?;
         Ok(to)
+    }
+
+    /// Puts an axis where its word leads.
+    pub(super) fn lead(&mut self, to: &mut Axes, axis: usize, word: Word) -> Result<(), GcodeError> {
+        let Some(place) = self.target(word, axis)? else {
+            return Err(self.error(GcodeErrorKind::PositionUnknown { axis: word.letter }, word.span));
+        };
+        to.set(axis, Some(place));
+        Ok(())
     }
 
     fn move_auxiliary(&mut self, block: &mut BlockWords<'_>) -> Result<(), GcodeError> {

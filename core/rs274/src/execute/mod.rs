@@ -7,6 +7,7 @@
 //! | `origin.rs`, `stored.rs` | work offsets, G92, G52, G10; the parameters that keep them |
 //! | `axes.rs` | axis words → places |
 //! | `motion.rs` | which code moves |
+//! | `plain.rs` | the commonest blocks, without a look at all codes |
 //! | `circle.rs`, `arc.rs` | arcs in the three planes, and where their centres lie |
 //! | `corner.rs`, `compensate.rs` | `,R` and `,C`; G40 … G42 |
 //! | `home.rs`, `probe.rs` | G28, G30, G53; probing and tapping |
@@ -34,6 +35,7 @@ mod memory;
 mod modes;
 mod motion;
 mod origin;
+mod plain;
 mod probe;
 mod rates;
 mod readout;
@@ -168,7 +170,10 @@ impl<'p, 's, 'm> Execution<'p, 's, 'm> {
         self.text = sentence.text;
         self.line = sentence.line;
         self.source = sentence.source;
-        if sentence.line.text.contains(&b'\r') {
+        if self.plain_move(sentence)? {
+            return Ok(Next::Continue);
+        }
+        if !sentence.is_plain && sentence.line.text.contains(&b'\r') {
             self.warn(WarningKind::ReturnInLine, sentence.line.span());
         }
         #[cfg(feature = "klartext")]

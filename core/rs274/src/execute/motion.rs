@@ -128,7 +128,7 @@ impl Execution<'_, '_, '_> {
     }
 
     /// Sets the motion that stays.
-    fn set_motion(&mut self, code: GCode, span: Span) -> Result<(), GcodeError> {
+    pub(super) fn set_motion(&mut self, code: GCode, span: Span) -> Result<(), GcodeError> {
         let before = self.modal.motion;
         let motion = match code.tenths() {
             0 => Some(Motion::Traverse),

@@ -46,17 +46,7 @@ impl Execution<'_, '_, '_> {
         let is_time = dwells && self.options.dialect == Dialect::Siemens;
         self.feed_given = block.word(b'F').is_some() && !is_time;
         if let Some(word) = block.use_word_if(b'F', !is_time) {
-            let feed = if self.modal.feed_mode == FeedMode::InverseTime {
-                word.value.real()
-            } else {
-                self.note_unit(word);
-                match self.modal.units {
-                    Units::Millimetres => word.value.real(),
-                    Units::Inches => word.value.real_ratio(254, 10),
-                }
-            };
-            self.modal.feed = Some(self.rate(word, feed)?);
-            self.emit(Canon::FeedRate(feed), word.span)?;
+            self.set_feed(word)?;
         }
         if let Some(word) = block.use_word_if(b'S', !dwells) {
             let speed = self.rate(word, word.value.real())?;
@@ -64,6 +54,21 @@ impl Execution<'_, '_, '_> {
             self.emit(Canon::SpindleSpeed(speed), word.span)?;
         }
         Ok(())
+    }
+
+    /// F.
+    pub(super) fn set_feed(&mut self, word: Word) -> Result<(), GcodeError> {
+        let feed = if self.modal.feed_mode == FeedMode::InverseTime {
+            word.value.real()
+        } else {
+            self.note_unit(word);
+            match self.modal.units {
+                Units::Millimetres => word.value.real(),
+                Units::Inches => word.value.real_ratio(254, 10),
+            }
+        };
+        self.modal.feed = Some(self.rate(word, feed)?);
+        self.emit(Canon::FeedRate(feed), word.span)
     }
 
     fn rate(&self, word: Word, value: Real) -> Result<Real, GcodeError> {

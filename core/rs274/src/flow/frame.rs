@@ -32,7 +32,30 @@ impl<'a> Frame<'a> {
         // The first text of the file, and behind each of the two.
         let (mut text, mut behind_first, mut behind_second) = (None, None, None);
         let mut only_remarks_before = true;
-        for line in Lines::new(program) {
+        let mut lines = Lines::new(program);
+        loop {
+            // From here to the next `%` nothing more is to be learnt.
+            let settled = match (first, second) {
+                (None, _) => text.is_some() && !only_remarks_before,
+                (_, None) => behind_first.is_some(),
+                _ => behind_second.is_some(),
+            };
+            if settled && second.is_some() {
+                break;
+            }
+            if settled || lines.is_at_start() {
+                match (lines.ahead(b'%'), first) {
+                    (Some(at), _) if settled => lines.go_on_at(at),
+                    (Some(_), _) => {}
+                    (None, None) => break,
+                    // The last line with text is where the second is missed.
+                    (None, _) => {
+                        last = lines.filter(|line| first_byte(line).is_some()).last().unwrap_or(last);
+                        break;
+                    }
+                }
+            }
+            let Some(line) = lines.next() else { break };
             let Some(byte) = first_byte(&line) else { continue };
             last = line;
             let place = match (first, second) {
@@ -102,6 +125,19 @@ mod tests {
     fn the_program_lies_between_the_percents() {
         assert_eq!(held("%\nA\n%\n"), (std::vec![1, 2, 3], false));
         assert_eq!(held("leader\n%\nA\n%\ntrailer"), (std::vec![2, 3, 4], true));
+    }
+
+    #[test]
+    fn what_lies_between_two_percents_is_not_looked_at() {
+        let of = |text: &'static str| {
+            let frame = Frame::of(text.as_bytes());
+            (frame.open, frame.close, frame.outside.map(|line| line.number), frame.last.number)
+        };
+        assert_eq!(of("%\nA\nB (50 %)\n\n %\nC\nD\n%"), (1, 5, Some(6), 6));
+        assert_eq!(of("A\nB (50 %)\n\n  %\nC\n\n"), (0, 4, Some(5), 5));
+        assert_eq!(of("(a)\n%\nA\n(50 %)\nB\n\n"), (2, u32::MAX, Some(1), 5));
+        assert_eq!(of("A\r%\rB\r%\rC").0, 2);
+        assert_eq!(of("(a)\nA % \nB"), (0, u32::MAX, None, 2));
     }
 
     #[test]

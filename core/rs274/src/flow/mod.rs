@@ -10,6 +10,7 @@ mod klartext;
 mod next;
 mod open;
 mod place;
+mod plain;
 mod program;
 mod reader;
 mod sentence;

@@ -8,6 +8,7 @@ use super::Program;
 use super::frame::Frame;
 use super::open::{CALLS, Call, CallKind, OpenList};
 use super::place::Place;
+use super::plain;
 use super::sentence::{ASSIGNMENTS, Assignments, Sentence, Word};
 
 /// The place in a program, and what has led there.
@@ -132,6 +133,10 @@ impl<'p> Reader<'p> {
         #[cfg(feature = "klartext")]
         if self.dialect.is_klartext() {
             return self.klartext(machine, sentence);
+        }
+        sentence.is_plain = plain::read(&line, sentence);
+        if sentence.is_plain {
+            return Ok(Read::Block);
         }
         let mut assignments = Assignments::new();
         let mut begun = false;

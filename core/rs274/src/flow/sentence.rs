@@ -38,6 +38,8 @@ pub(in super::super) struct Sentence<'p> {
     pub(in super::super) block_delete: Option<Span>,
     /// Whether it has comments.
     pub(in super::super) has_comments: bool,
+    /// Whether it is nothing but letters with written numbers, spaces and tabs.
+    pub(in super::super) is_plain: bool,
     /// What a conversational block does, and what stands behind the words that say so.
     #[cfg(feature = "klartext")]
     pub(in super::super) statement: super::super::Statement,
@@ -58,6 +60,7 @@ impl<'p> Sentence<'p> {
             words: heapless::Vec::new(),
             block_delete: None,
             has_comments: false,
+            is_plain: false,
             #[cfg(feature = "klartext")]
             statement: super::super::Statement::Empty,
             #[cfg(feature = "klartext")]

@@ -79,30 +79,38 @@ impl Decimal {
     }
     /// The same of a number as programs nearly always write it: at most 18 digits, only a minus before them, nothing between them.
     /// With the number of bytes read; `None` where the long way decides.
+    #[inline]
     fn read_plain(input: &[u8], is_point: impl Fn(u8) -> bool, is_blank: impl Fn(u8) -> bool) -> Option<(Self, usize)> {
-        let negative = input.first() == Some(&b'-');
-        let start = usize::from(negative);
-        let (mut mantissa, mut end, mut point) = (0i64, start, None);
-        while let Some(&byte) = input.get(end) {
-            let digit = byte.wrapping_sub(b'0');
-            if digit < 10 {
-                mantissa = mantissa.wrapping_mul(10).wrapping_add(i64::from(digit));
-            } else if point.is_none() && is_point(byte) {
-                point = Some(end);
-            } else {
+        let (negative, from) = match input.split_first() {
+            Some((b'-', behind)) => (true, behind),
+            _ => (false, input),
+        };
+        let (mut mantissa, mut rest) = digits(0, from);
+        let mut written = from.len().wrapping_sub(rest.len());
+        let mut decimals = 0;
+        if let Some((&byte, behind)) = rest.split_first()
+            && is_point(byte)
+        {
+            (mantissa, rest) = digits(mantissa, behind);
+            decimals = behind.len().wrapping_sub(rest.len());
+            written = written.wrapping_add(decimals);
+        }
+        // Behind a blank the number may go on.
+        let mut behind = rest;
+        while let Some((&byte, further)) = behind.split_first() {
+            if !is_blank(byte) {
+                if byte.is_ascii_digit() || is_point(byte) {
+                    return None;
+                }
                 break;
             }
-            end = end.wrapping_add(1);
+            behind = further;
         }
-        let digits = end.wrapping_sub(start).wrapping_sub(usize::from(point.is_some()));
-        let decimals = point.map_or(0, |at| end.wrapping_sub(at).wrapping_sub(1));
-        // Behind a blank the number may go on.
-        let behind = input.get(end..).unwrap_or(&[]).iter().find(|byte| !is_blank(**byte));
-        let goes_on = behind.is_some_and(|&byte| byte.is_ascii_digit() || is_point(byte));
-        (0 < digits && digits <= usize::from(DIGITS) && !goes_on).then(|| {
-            let mantissa = if negative { mantissa.wrapping_neg() } else { mantissa };
-            (Self { mantissa, decimals: decimals as u8 }, end)
-        })
+        if written == 0 || written > usize::from(DIGITS) {
+            return None;
+        }
+        let mantissa = if negative { mantissa.wrapping_neg() } else { mantissa };
+        Some((Self { mantissa, decimals: decimals as u8 }, input.len().wrapping_sub(rest.len())))
     }
     /// The written digits as a whole number, with the sign.
     pub const fn mantissa(self) -> i64 {
@@ -129,8 +137,21 @@ impl Decimal {
         }
         div_rounded((self.mantissa as i128).saturating_mul(factor as i128), self.power())
     }
+    /// The same, where 64 bits hold it.
+    pub(super) fn in_64(self, factor: i64) -> Option<i64> {
+        match self.whole_factor(factor).and_then(|whole| self.mantissa.checked_mul(whole)) {
+            Some(product) => Some(product),
+            None => i64::try_from(self.times(factor)).ok(),
+        }
+    }
     /// This number times a whole one, when that is a whole number.
     pub const fn exactly_times(self, factor: i64) -> Option<i64> {
+        if self.decimals == 0
+            && let Some(whole) = self.mantissa.checked_mul(factor)
+            && whole != i64::MIN
+        {
+            return Some(whole);
+        }
         let product = (self.mantissa as i128).saturating_mul(factor as i128);
         match (product.checked_rem(self.power()), product.checked_div(self.power())) {
             (Some(0), Some(whole)) if whole.unsigned_abs() <= i64::MAX as u128 => Some(whole as i64),
@@ -153,6 +174,19 @@ impl Decimal {
     }
     /// `factor / 10^decimals` when that is whole.
     const fn whole_factor(self, factor: i64) -> Option<i64> {
+        // Millimetres and degrees.
+        if factor == 1_000_000 {
+            return match self.decimals {
+                0 => Some(1_000_000),
+                1 => Some(100_000),
+                2 => Some(10_000),
+                3 => Some(1_000),
+                4 => Some(100),
+                5 => Some(10),
+                6 => Some(1),
+                _ => None,
+            };
+        }
         let mut whole = factor;
         let mut left = self.decimals;
         while left > 0 {
@@ -167,6 +201,20 @@ impl Decimal {
     const fn power(self) -> i128 {
         10i128.saturating_pow(self.decimals as u32)
     }
+}
+
+/// The digits at the start of a text behind those of `mantissa`, and what follows them.
+#[inline]
+fn digits(mut mantissa: i64, mut text: &[u8]) -> (i64, &[u8]) {
+    while let Some((&byte, behind)) = text.split_first() {
+        let digit = byte.wrapping_sub(b'0');
+        if digit > 9 {
+            break;
+        }
+        mantissa = mantissa.wrapping_mul(10).wrapping_add(i64::from(digit));
+        text = behind;
+    }
+    (mantissa, text)
 }
 
 /// Why a text is no number.
@@ -192,6 +240,12 @@ pub(in super::super) fn trimmed(text: &[u8]) -> &[u8] {
 /// A number, with the blanks before and inside it; what follows it is the rest.
 pub(in super::super) fn number(input: &[u8]) -> (&[u8], Result<Decimal, NumberError>) {
     Decimal::read(input, |byte| byte == b'.', is_blank)
+}
+
+/// A number with nothing unusual in it at the start of a text, and its length; `None` where [`number`] decides.
+#[inline]
+pub(in super::super) fn plain_number(input: &[u8]) -> Option<(Decimal, usize)> {
+    Decimal::read_plain(input, |byte| byte == b'.', is_blank)
 }
 
 #[cfg(test)]

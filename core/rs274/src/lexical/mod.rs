@@ -8,7 +8,7 @@ mod token;
 mod word;
 
 pub use decimal::{Decimal, NumberError};
-pub(super) use decimal::{is_blank, number, trimmed};
+pub(super) use decimal::{is_blank, number, plain_number, trimmed};
 pub(super) use extent::behind_comments;
 pub use number::Number;
 pub(super) use symbol::{Function, Operator, spelled};

@@ -25,7 +25,7 @@ impl Number {
     #[expect(clippy::float_arithmetic, reason = "a computed number leaves floating point here, rounded once")]
     pub fn nanometres(self, units: Units) -> Option<i64> {
         match self {
-            Self::Exact(decimal) => i64::try_from(decimal.times(units.nanometres())).ok(),
+            Self::Exact(decimal) => decimal.in_64(units.nanometres()),
             Self::Computed(value) => whole(value * units.nanometres() as f64),
         }
     }

@@ -14,6 +14,7 @@ mod interpret;
 #[cfg(feature = "klartext")]
 mod klartext;
 mod machine;
+mod plain;
 mod properties;
 mod search;
 mod tolerance;

@@ -2,10 +2,13 @@
 
 use std::io::{self, Write};
 
-use super::number::{push_ratio, push_real, push_whole};
+use super::number::{push_ratio, push_real, push_right, push_separated, push_whole};
 
 /// Bytes gathered before they are written.
 const PIECE: usize = 1 << 16;
+
+/// Of a block without an N word.
+const NO_LABEL: &[u8; 7] = b"N..... ";
 
 /// The text being written.
 pub(super) struct Lines<W> {
@@ -15,27 +18,32 @@ pub(super) struct Lines<W> {
     number: u64,
     /// `N10   ` or `N..... `.
     label: Vec<u8>,
+    /// Whether it names a block.
+    labelled: bool,
     /// What the writer answered when it failed; nothing is written after that.
     failed: Option<io::Error>,
 }
 
 impl<W: Write> Lines<W> {
     pub(super) fn new(out: W) -> Self {
-        let mut lines = Self { out, text: Vec::with_capacity(PIECE * 2), number: 0, label: Vec::new(), failed: None };
-        lines.set_label(None);
-        lines
+        let text = Vec::with_capacity(PIECE * 2);
+        Self { out, text, number: 0, label: NO_LABEL.to_vec(), labelled: false, failed: None }
     }
 
     /// The N word of the block the next lines belong to, its digits before the point.
+    #[inline]
     pub(super) fn set_label(&mut self, digits: Option<&[u8]>) {
-        self.label.clear();
-        match digits {
-            Some(digits) => {
-                self.label.push(b'N');
-                self.label.extend_from_slice(digits);
-            }
-            None => self.label.extend_from_slice(b"N....."),
+        if digits.is_some() || self.labelled {
+            self.change_label(digits);
         }
+    }
+
+    fn change_label(&mut self, digits: Option<&[u8]>) {
+        self.labelled = digits.is_some();
+        self.label.clear();
+        let Some(digits) = digits else { return self.label.extend_from_slice(NO_LABEL) };
+        self.label.push(b'N');
+        self.label.extend_from_slice(digits);
         while self.label.len() < 6 {
             self.label.push(b' ');
         }
@@ -44,20 +52,31 @@ impl<W: Write> Lines<W> {
 
     /// Begins a line with the name of a call: everything up to its opening parenthesis.
     pub(super) fn open(&mut self, name: &str) {
-        self.number += 1;
-        let mut limit = 10_000;
-        while self.number < limit && limit > 1 {
-            self.text.push(b' ');
-            limit /= 10;
-        }
-        push_whole(&mut self.text, self.number);
-        self.text.push(b' ');
-        self.text.extend_from_slice(&self.label);
+        self.begin();
         self.text.extend_from_slice(name.as_bytes());
         self.text.push(b'(');
     }
 
+    /// The same of a call that moves, whose name brings its parenthesis along.
+    #[inline]
+    pub(super) fn open_move<const N: usize>(&mut self, name: &[u8; N]) {
+        self.begin();
+        self.text.extend_from_slice(name);
+    }
+
+    /// The number and the label.
+    #[inline]
+    fn begin(&mut self) {
+        self.number += 1;
+        push_right(&mut self.text, self.number);
+        match self.label.first_chunk::<7>() {
+            Some(label) if self.label.len() == 7 => self.text.extend_from_slice(label),
+            _ => self.text.extend_from_slice(&self.label),
+        }
+    }
+
     /// Ends it.
+    #[inline]
     pub(super) fn close(&mut self) {
         self.text.extend_from_slice(b")\n");
         if self.text.len() >= PIECE {
@@ -97,6 +116,25 @@ impl<W: Write> Lines<W> {
         push_real(&mut self.text, value);
     }
 
+    /// Lengths, each with the separator behind it.
+    #[inline]
+    pub(super) fn push_lengths<const N: usize>(&mut self, values: [i64; N], unit: i64) {
+        for value in values {
+            push_separated(&mut self.text, value, unit);
+        }
+    }
+
+    /// The axes that turn, and the end of the line.
+    #[inline]
+    pub(super) fn close_turned(&mut self, turned: [i64; 3], unit: i64) {
+        if turned == [0; 3] {
+            self.text.extend_from_slice(b"0.0000, 0.0000, 0.0000");
+        } else {
+            self.push_values(&turned.map(|value| (value, unit)), ", ");
+        }
+        self.close();
+    }
+
     /// Values in their units, separated.
     pub(super) fn push_values(&mut self, values: &[(i64, i64)], separator: &str) {
         for (index, (value, unit)) in values.iter().enumerate() {
@@ -107,6 +145,7 @@ impl<W: Write> Lines<W> {
         }
     }
 
+    #[cold]
     fn pass_on(&mut self) {
         if self.failed.is_none()
             && let Err(error) = self.out.write_all(&self.text)

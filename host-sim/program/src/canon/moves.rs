@@ -23,12 +23,12 @@ impl<W: Write> Calls<'_, W> {
         match *canon {
             Canon::Traverse { to, .. } => {
                 self.go(to);
-                self.straight("STRAIGHT_TRAVERSE", modal);
+                self.straight(b"STRAIGHT_TRAVERSE(", modal);
             }
             Canon::Feed { to, .. } => {
                 self.inverse_time(modal, distance, to);
                 self.go(to);
-                self.straight("STRAIGHT_FEED", modal);
+                self.straight(b"STRAIGHT_FEED(", modal);
             }
             Canon::Arc { to, centre, counter_clockwise, turns, .. } => {
                 self.arc(&Arc { plane: Plane::Xy, to, centre, counter_clockwise, turns }, modal);
@@ -43,7 +43,7 @@ impl<W: Write> Calls<'_, W> {
             Canon::Probe { to, .. } => {
                 self.lines.call("TURN_PROBE_ON", "");
                 self.go(to);
-                self.straight("STRAIGHT_PROBE", modal);
+                self.straight(b"STRAIGHT_PROBE(", modal);
                 self.lines.call("TURN_PROBE_OFF", "");
             }
             Canon::Tap { from, to } => {
@@ -57,29 +57,33 @@ impl<W: Write> Calls<'_, W> {
             // Without knowledge of the machine: its coordinates less the offsets are those of the program.
             Canon::MachineMove { to, rapid } => {
                 self.go(modal.shifts.to_program(to));
-                self.straight(if rapid { "STRAIGHT_TRAVERSE" } else { "STRAIGHT_FEED" }, modal);
+                if rapid {
+                    self.straight(b"STRAIGHT_TRAVERSE(", modal);
+                } else {
+                    self.straight(b"STRAIGHT_FEED(", modal);
+                }
             }
             Canon::Reference { axes, via, .. } => {
                 self.go(via);
-                self.straight("STRAIGHT_TRAVERSE", modal);
+                self.straight(b"STRAIGHT_TRAVERSE(", modal);
                 let zero = modal.shifts.to_program(Axes::ORIGIN);
                 for (axis, _) in axes.into_iter().enumerate().filter(|(_, moves)| *moves) {
                     let mut one = Axes::UNKNOWN;
                     one.set(axis, zero.get(axis));
                     self.go(one);
                 }
-                self.straight("STRAIGHT_TRAVERSE", modal);
+                self.straight(b"STRAIGHT_TRAVERSE(", modal);
             }
             _ => {}
         }
     }
 
-    fn straight(&mut self, name: &str, modal: &Modal) {
-        let unit = modal.units.nanometres();
-        let ([x, y, z], [a, b, c, ..]) = (self.at, modal.auxiliary);
-        self.lines.open(name);
-        self.lines.push_values(&[(x, unit), (y, unit), (z, unit), (a, MILLION), (b, MILLION), (c, MILLION)], ", ");
-        self.lines.close();
+    #[inline]
+    fn straight<const N: usize>(&mut self, name: &[u8; N], modal: &Modal) {
+        let [a, b, c, ..] = modal.auxiliary;
+        self.lines.open_move(name);
+        self.lines.push_lengths(self.at, modal.units.nanometres());
+        self.lines.close_turned([a, b, c], MILLION);
     }
 
     fn arc(&mut self, arc: &Arc, modal: &Modal) {
@@ -100,15 +104,13 @@ impl<W: Write> Calls<'_, W> {
         let unit = modal.units.nanometres();
         let [a, b, c, ..] = modal.auxiliary;
         let at = self.at;
-        self.lines.open("ARC_FEED");
-        let ends = [at[first], at[second], arc.centre.x.nm(), arc.centre.y.nm()];
-        self.lines.push_values(&ends.map(|v| (v, unit)), ", ");
-        self.lines.push(if arc.counter_clockwise { ", " } else { ", -" });
+        self.lines.open_move(b"ARC_FEED(");
+        self.lines.push_lengths([at[first], at[second], arc.centre.x.nm(), arc.centre.y.nm()], unit);
+        self.lines.push(if arc.counter_clockwise { "" } else { "-" });
         self.lines.push_whole(turns.unsigned_abs());
         self.lines.push(", ");
-        let rest = [(at[third], unit), (a, MILLION), (b, MILLION), (c, MILLION)];
-        self.lines.push_values(&rest, ", ");
-        self.lines.close();
+        self.lines.push_lengths([at[third]], unit);
+        self.lines.close_turned([a, b, c], MILLION);
     }
 
     /// In G93 the feed of a move is its length by the time F gives.

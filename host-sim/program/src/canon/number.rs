@@ -5,12 +5,25 @@
 
 use std::io::Write;
 
+/// What stands between values.
+const SEPARATOR: &[u8; 2] = b", ";
+
+/// The first number of more than eight digits.
+const NINE_DIGITS: u64 = 100_000_000;
+
 /// Appends `value / unit` with four decimals; `unit` is positive: 1 000 000 for millimetres and degrees, 25 400 000
 /// for inches.
 pub(super) fn push_ratio(out: &mut Vec<u8>, value: i64, unit: i64) {
+    push_separated(out, value, unit);
+    out.truncate(out.len() - SEPARATOR.len());
+}
+
+/// The same with a comma and a blank behind it.
+#[inline]
+pub(super) fn push_separated(out: &mut Vec<u8>, value: i64, unit: i64) {
     // An axis that does not move, and those that turn nearly always.
     if value == 0 {
-        return out.extend_from_slice(b"0.0000");
+        return out.extend_from_slice(b"0.0000, ");
     }
     // Both units are multiples of 10 000. Division by a constant is a product.
     let magnitude = value.unsigned_abs();
@@ -22,17 +35,21 @@ pub(super) fn push_ratio(out: &mut Vec<u8>, value: i64, unit: i64) {
         }
     };
     if rest * 2 == last {
-        return push_real(out, value as f64 / unit as f64);
+        push_real(out, value as f64 / unit as f64);
+        return out.extend_from_slice(SEPARATOR);
     }
     digits += u64::from(rest * 2 > last);
-    if value < 0 && digits != 0 {
-        out.push(b'-');
-    }
-    push_digits(out, digits);
+    let minus = value < 0 && digits != 0;
+    if digits < NINE_DIGITS { push_few_digits(out, minus, digits) } else { push_digits(out, minus, digits) }
 }
 
 /// Appends a double with four decimals.
 pub(super) fn push_real(out: &mut Vec<u8>, value: f64) {
+    // Feeds and speeds are mostly whole.
+    if (1.0..10_000.0).contains(&value) && value.fract() == 0.0 {
+        push_few_digits(out, false, value as u64 * 10_000);
+        return out.truncate(out.len() - SEPARATOR.len());
+    }
     let start = out.len();
     // Writing to memory does not fail.
     let _ = write!(out, "{value:.4}");
@@ -41,14 +58,71 @@ pub(super) fn push_real(out: &mut Vec<u8>, value: f64) {
     }
 }
 
-/// Appends ten-thousandths as a decimal number.
-fn push_digits(out: &mut Vec<u8>, ten_thousandths: u64) {
+/// Appends ten-thousandths as a decimal number, and the separator.
+#[cold]
+fn push_digits(out: &mut Vec<u8>, minus: bool, ten_thousandths: u64) {
+    if minus {
+        out.push(b'-');
+    }
     let (whole, part) = (ten_thousandths / 10_000, ten_thousandths % 10_000);
     push_whole(out, whole);
     // With a one before them, so that the zeros stay.
     let mut text = itoa::Buffer::new();
     let digits = text.format(part as u32 + 10_000).as_bytes();
     out.extend_from_slice(&[b'.', digits[1], digits[2], digits[3], digits[4]]);
+    out.extend_from_slice(SEPARATOR);
+}
+
+/// The same of at most eight digits: as one number of 16 bytes, from which the zeros in front are shifted out.
+#[inline]
+fn push_few_digits(out: &mut Vec<u8>, minus: bool, ten_thousandths: u64) {
+    let digits = eight_digits(ten_thousandths);
+    // The last digit before the point stays.
+    let zeros = zeros_in_front(digits).min(3);
+    let (whole, part) = (digits & 0xFFFF_FFFF, digits >> 32);
+    let text = u128::from(whole) | (u128::from(b'.') << 32) | (u128::from(part) << 40);
+    let text = (text | (u128::from(u16::from_le_bytes(*SEPARATOR)) << 72)) >> (8 * zeros);
+    let text = if minus { (text << 8) | u128::from(b'-') } else { text };
+    push_front(out, text, 9 + SEPARATOR.len() - zeros as usize + usize::from(minus));
+}
+
+/// Appends the first bytes of sixteen.
+#[inline]
+fn push_front(out: &mut Vec<u8>, text: u128, length: usize) {
+    let end = out.len() + length;
+    out.extend_from_slice(&text.to_le_bytes());
+    out.truncate(end);
+}
+
+/// The digits of a number below 10⁸, the first in the lowest byte: two halves, four quarters, eight digits at once.
+#[inline]
+const fn eight_digits(number: u64) -> u64 {
+    let fours = (number / 10_000) | ((number % 10_000) << 32);
+    let hundreds = ((fours * 10_486) >> 20) & 0x7F_0000_007F;
+    let twos = hundreds | ((fours - hundreds * 100) << 16);
+    let tens = ((twos * 103) >> 10) & 0x000F_000F_000F_000F;
+    tens | ((twos - tens * 10) << 8) | 0x3030_3030_3030_3030
+}
+
+/// How many of eight digits are zeros in front, 7 of a zero.
+#[inline]
+const fn zeros_in_front(digits: u64) -> u32 {
+    ((digits ^ 0x3030_3030_3030_3030) | (1 << 56)).trailing_zeros() / 8
+}
+
+/// Appends a whole number in at least five places, with blanks before it and one behind it.
+#[inline]
+pub(super) fn push_right(out: &mut Vec<u8>, number: u64) {
+    if number >= NINE_DIGITS {
+        push_whole(out, number);
+        return out.push(b' ');
+    }
+    let digits = eight_digits(number);
+    let zeros = zeros_in_front(digits);
+    let blanks = 0x1010_1010_1010_1010 & ((1 << (8 * zeros)) - 1);
+    let text = u128::from(digits ^ blanks) | (u128::from(b' ') << 64);
+    let left_out = zeros.min(3);
+    push_front(out, text >> (8 * left_out), 9 - left_out as usize);
 }
 
 /// Appends a whole number.
@@ -77,7 +151,32 @@ mod tests {
         assert_eq!(ratio(i64::MIN, 1_000_000), "-9223372036854.7758");
     }
 
+    #[test]
+    fn whole_numbers_stand_right_in_five_places() {
+        for number in [0, 7, 10, 99, 9_999, 10_000, 123_456, 99_999_999, 100_000_000, 12_345_678_901] {
+            let mut out = Vec::new();
+            push_right(&mut out, number);
+            assert_eq!(String::from_utf8(out).unwrap(), format!("{number:5} "));
+        }
+    }
+
+    #[test]
+    fn a_number_of_nine_digits_is_written_as_one_of_eight() {
+        assert_eq!(ratio(9_999_999_949, 1_000_000), "9999.9999");
+        assert_eq!(ratio(-9_999_999_951, 1_000_000), "-10000.0000");
+        assert_eq!(ratio(-1_000_000_000, 1_000_000), "-1000.0000");
+    }
+
     proptest! {
+        #[test]
+        fn eight_digits_are_those_of_the_number(number in 0u64..100_000_000) {
+            let text = format!("{number:08}");
+            let digits = eight_digits(number).to_le_bytes();
+            prop_assert_eq!(digits.as_slice(), text.as_bytes());
+            let zeros = text.bytes().take(7).take_while(|&b| b == b'0').count();
+            prop_assert_eq!(zeros_in_front(eight_digits(number)) as usize, zeros);
+        }
+
         #[test]
         fn every_length_is_written_as_the_double_next_to_it(nm in -1i64 << 50..1 << 50, inch: bool) {
             let unit = if inch { 25_400_000 } else { 1_000_000 };

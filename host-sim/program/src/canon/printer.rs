@@ -92,19 +92,24 @@ impl<'a, W: Write> Printer<'a, W> {
             self.cancels = still && (self.moving || has_g(event.text, source, &[800]));
             self.moving = !still;
         }
-        match event.canon {
-            Canon::Comment(body) => self.comment(event, body),
+        match &event.canon {
+            Canon::Comment(body) => self.comment(event, *body),
             Canon::ProgramNumber(_) => self.named = true,
+            canon @ (Canon::Feed { .. } | Canon::Traverse { .. }) => {
+                self.settle();
+                self.tell_modes(event.modal);
+                self.calls.motion(canon, event.modal);
+            }
             canon => {
                 // M72 brings the unit back before the feed.
                 let restored = matches!(canon, Canon::Units(_)) && !has_g(event.text, source, &[200, 210, 700, 710]);
-                let rank = if restored { 1 } else { rank(&canon) };
+                let rank = if restored { 1 } else { rank(canon) };
                 if rank < 20 {
-                    self.steps.push(Step { canon, modal: *event.modal, rank });
+                    self.steps.push(Step { canon: *canon, modal: *event.modal, rank });
                 } else {
                     self.settle();
                     self.tell_modes(event.modal);
-                    self.calls.call(&canon, event.modal, Some(event));
+                    self.calls.call(canon, event.modal, Some(event));
                 }
             }
         }
@@ -118,7 +123,14 @@ impl<'a, W: Write> Printer<'a, W> {
     }
 
     /// Prints what was gathered of a block, in order.
+    #[inline]
     fn settle(&mut self) {
+        if self.remark.is_some() || !self.steps.is_empty() {
+            self.print_steps();
+        }
+    }
+
+    fn print_steps(&mut self) {
         match self.remark.take().filter(|_| !self.named) {
             Some(Remark::Call(name, text)) => {
                 self.calls.lines.open(name);
