@@ -99,7 +99,8 @@ impl InProcess {
     }
 }
 
-fn workspace() -> Workspace<'static> {
+/// Room of the on-board correction.
+pub(crate) fn workspace() -> Workspace<'static> {
     let unseen = Observation::new(Offset::ZERO, Real::ZERO, Offset::ZERO, Offset::ZERO, Direction::X);
     Workspace {
         parameters: Box::leak(Box::new(DeviceMemory::new())).lend(),

@@ -10,6 +10,8 @@
 //! | [`Judge`] | rules for every answer that know nothing of that code |
 //! | [`Campaign`] | all of it in one run |
 //! | [`mod@attack`] | random images, settings, controllers and cables against the host's own servo, judged by the contract alone |
+//! | [`mod@whole`] | a whole device that is told anything over both links, judged by the contract and by what it promises beside it |
+//! | [`Example`] | an image to try things with |
 //! | [`Watch`], [`RunStatus`] | what somebody who looks on sees of it |
 //!
 //! Frames and messages are those of `truepath_core::link`; nothing here knows their bytes.
@@ -26,6 +28,7 @@ mod compare;
 mod difference;
 mod emulator;
 mod error;
+mod example;
 mod expect;
 mod in_process;
 mod injector;
@@ -38,6 +41,7 @@ mod round_trip;
 pub mod traffic;
 mod uart;
 mod watch;
+pub mod whole;
 mod wire;
 
 pub use access::Access;
@@ -49,6 +53,7 @@ pub use client::{Client, Committed};
 pub use difference::Difference;
 pub use emulator::{ELF, Emulator, LOADER, find_elf, find_loader};
 pub use error::BenchError;
+pub use example::{EXAMPLE_FEED, EXAMPLE_PASS, Example};
 pub use expect::Expectation;
 pub use in_process::InProcess;
 pub use injector::{Delivery, FaultInjector, Faults, Injected};

@@ -1,41 +1,13 @@
 //! `truepath key`, `truepath image sign` and `verify`, as a user calls them.
 
 use serde_json::Value;
-use truepath_core::geometry::Point;
-use truepath_core::image::{
-    Binding, CorrectionLimits, FeedLaw, FineOffset, ImageNode, ImageSettings, PathWindow, build, image_bytes,
-};
-use truepath_core::units::{Offset, Position, Real};
+use truepath_bench::Example;
 
 use crate::workplace::Workplace;
 
 /// 2 mm along X with 50 µm in Y.
 fn image() -> Vec<u8> {
-    let fine = |um| FineOffset::checked_from_offset(Offset::from_um(um)).unwrap();
-    let settings = ImageSettings {
-        binding: Binding { program_crc: 0x1234_5678, feature: 1, pass: 1, tool: 3, tool_offset: 3, setup: 1 },
-        closed: false,
-        feed: FeedLaw::new(fine(44), 6, 1_500_000, Real::ZERO, Real::ratio(1, 4), Real::ratio(3, 2)),
-        limits: CorrectionLimits {
-            clamp: Offset::from_um(500),
-            warn: Offset::from_um(200),
-            slew_nm_per_s: 20_000_000,
-            acceleration_nm_per_s2: 1_000_000_000,
-        },
-        window: PathWindow {
-            tolerance: Offset::from_um(200),
-            z_low: Position::from_nm(-10_000_000),
-            z_high: Position::from_nm(-10_000_000),
-            gate_height: Offset::from_um(5_000),
-        },
-        node_step: Offset::from_um(100),
-    };
-    let node =
-        |i: i64| ImageNode { point: Point::from_nm(i * 100_000, 0), chip: [fine(0), fine(50)], edge: [fine(0); 2] };
-    let nodes: Vec<_> = (0..=20).map(node).collect();
-    let mut bytes = vec![0; image_bytes(nodes.len())];
-    build(&settings, &nodes, &mut bytes).unwrap();
-    bytes
+    Example::along_x(21, |_| [0, 50]).bytes()
 }
 
 /// With an image and the keys of an owner and of a stranger.

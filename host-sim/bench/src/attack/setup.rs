@@ -122,6 +122,10 @@ impl Setup {
     pub fn images(&self) -> [Image<'_>; 2] {
         self.bytes.each_ref().map(|bytes| Image::new_checked(bytes).expect("an image that was checked"))
     }
+    /// Their bytes.
+    pub const fn bytes(&self) -> &[Vec<u8>; 2] {
+        &self.bytes
+    }
     /// Way per tick at the nominal feed, nm.
     pub const fn feed_nm(&self) -> i64 {
         self.feed_nm

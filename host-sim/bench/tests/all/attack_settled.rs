@@ -3,42 +3,21 @@
 
 use truepath_bench::attack::{Checker, HostServo, Servo, Setup};
 use truepath_bench::traffic::Command;
-use truepath_core::geometry::Point;
-use truepath_core::image::{Binding, CorrectionLimits, FeedLaw, FineOffset, ImageNode, ImageSettings, PathWindow};
+use truepath_bench::{EXAMPLE_FEED, EXAMPLE_PASS, Example};
 use truepath_core::link::{DeviceSettings, MAX_SETPOINT_BYTES, SetpointFrame};
 use truepath_core::rewrite::{ArmRequest, Flags, Frame, Mode, Output, Reason, Setpoint};
-use truepath_core::units::{Offset, Position, Real};
 
 const MM: i64 = 1_000_000;
 /// Z of the pass, and a place in the gate above it.
-const PASS: i64 = -10 * MM;
+const PASS: i64 = EXAMPLE_PASS;
 const GATE: i64 = PASS + 3 * MM;
 /// Way per tick.
-const FEED: i64 = 6_667;
+const FEED: i64 = EXAMPLE_FEED;
 
 /// 10 mm along X at 1 kHz; everywhere 50 µm in X and Y.
 fn straight() -> Setup {
-    let fine = |nm| FineOffset::checked_from_offset(Offset::from_nm(nm)).unwrap();
-    let image = ImageSettings {
-        binding: Binding { program_crc: 1, feature: 2, pass: 3, tool: 4, tool_offset: 5, setup: 6 },
-        closed: false,
-        feed: FeedLaw::new(fine(44_447), 6, 1_500_000, Real::ZERO, Real::ratio(1, 4), Real::ratio(3, 2)),
-        limits: CorrectionLimits {
-            clamp: Offset::from_um(500),
-            warn: Offset::from_um(200),
-            slew_nm_per_s: 20_000_000,
-            acceleration_nm_per_s2: 1_000_000_000,
-        },
-        window: PathWindow {
-            tolerance: Offset::from_um(200),
-            z_low: Position::from_nm(PASS),
-            z_high: Position::from_nm(PASS),
-            gate_height: Offset::from_um(5_000),
-        },
-        node_step: Offset::from_um(100),
-    };
-    let node = |k| ImageNode { point: Point::from_nm(k * MM / 10, 0), chip: [fine(50_000); 2], edge: [fine(0); 2] };
-    Setup::of(DeviceSettings::at_1_khz(), image, (0..=100).map(node).collect(), FEED)
+    let Example { settings, nodes } = Example::along_x(101, |_| [50, 50]);
+    Setup::of(DeviceSettings::at_1_khz(), settings, nodes, FEED)
 }
 
 /// A controller without faults; every answer is judged.

@@ -1,13 +1,21 @@
-//! Doubles of the servo: the host's own, with one mistake each.
+//! Doubles of the servo: the host's own, with one mistake each; and of a whole device, with the same mistakes and some more.
 //!
 //! Where it can be, the mistake is made before the servo: it is told of another image, another setting, another time, or
 //! another setpoint than the one that came, and answers to that. Nothing of the servo itself is changed for it.
 
 use truepath_bench::attack::{HostServo, Servo, Setup};
 use truepath_bench::traffic::Command;
+use truepath_bench::whole::{Whole, WholeDevice};
 use truepath_core::checksum::crc32;
-use truepath_core::link::{MAX_SETPOINT_BYTES, SetpointFrame, stuff, unstuff};
+use truepath_core::image::{Binding, SignatureError};
+use truepath_core::job::Workspace;
+use truepath_core::link::{
+    Ask, Denial, MAX_SETPOINT_BYTES, PACKET_BYTES, Reply, Request, ResetCause, Response, SetpointFrame, decode,
+    decode_request, encode, stuff, unstuff,
+};
 use truepath_core::rewrite::{ArmRequest, Flags, Mode, Output, Reason, Refusal, Setpoint};
+use truepath_fw::config_service::Restart;
+use truepath_fw::flash::Cut;
 
 /// The mistake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,6 +74,84 @@ pub enum Mistake {
     TooHard,
     /// No joint limits.
     NoJointLimits,
+    /// Of a device: a request is carried out for whoever asks.
+    RoleIgnored,
+    /// Of a device: an image is said to be taken whoever signed it, or nobody.
+    SignatureIgnored,
+    /// Of a device: an older image is said to be in use.
+    CounterIgnored,
+    /// Of a device: settings are confirmed, and not kept.
+    SettingsForgotten,
+    /// Of a device: an image is confirmed, and taken out of use again.
+    ActivationForgotten,
+    /// Of a device: an answer has a damaged checksum.
+    AnswerDamaged,
+    /// Of a device: an answer has another number than its request.
+    AnswerOfAnother,
+    /// Of a device: it is in `Bypass` after a reset.
+    AwakeAfterReset,
+}
+
+/// What a mistake is made with, seen from inside.
+trait Inside: Servo {
+    /// Setpoints that were accepted.
+    fn accepted(&mut self) -> u64;
+    /// Why a setpoint would end what is on, given that nothing has yet.
+    fn would_end(&self, setpoint: &Setpoint, axes: u8, now_us: u64) -> Option<Reason>;
+    /// Whether a disarming would be confirmed.
+    fn would_disarm(&self, now_us: u64) -> Result<(), Refusal>;
+    /// Numbers of the image in use.
+    fn binding(&self) -> Option<Binding>;
+}
+
+impl Inside for HostServo<'_> {
+    fn accepted(&mut self) -> u64 {
+        self.endpoint().counters().accepted.into()
+    }
+    fn would_end(&self, setpoint: &Setpoint, axes: u8, now_us: u64) -> Option<Reason> {
+        let mut trial = self.clone();
+        if trial.endpoint().state().reason() != Reason::None {
+            return None;
+        }
+        trial.receive(&packet(setpoint, axes), now_us, 0);
+        Some(trial.endpoint().state().reason())
+    }
+    fn would_disarm(&self, now_us: u64) -> Result<(), Refusal> {
+        self.clone().command(&Command::Disarm, now_us)
+    }
+    fn binding(&self) -> Option<Binding> {
+        self.image().map(|image| image.settings().binding)
+    }
+}
+
+/// There are no two of a device to try one of them: what a setpoint ends is read off its flags alone.
+impl Inside for WholeDevice {
+    fn accepted(&mut self) -> u64 {
+        Self::accepted(self)
+    }
+    fn would_end(&self, setpoint: &Setpoint, _: u8, _: u64) -> Option<Reason> {
+        if self.reason() != Reason::None || !matches!(self.mode(), Mode::Armed | Mode::Active | Mode::Hold) {
+            return None;
+        }
+        let stops = [
+            (Flags::EMERGENCY_STOP, Reason::EmergencyStop),
+            (Flags::ABORT, Reason::Abort),
+            (Flags::TOOL_CHANGE, Reason::ToolChange),
+            (Flags::PROGRAM_END, Reason::ProgramEnd),
+        ];
+        let flag = stops.into_iter().find(|(flag, _)| setpoint.flags.has(*flag)).map(|(_, reason)| reason);
+        flag.or((!setpoint.flags.has(Flags::DRIVES_ENABLED)).then_some(Reason::DrivesDisabled))
+    }
+    fn would_disarm(&self, _: u64) -> Result<(), Refusal> {
+        match self.mode() {
+            Mode::Armed | Mode::Active | Mode::Hold => Ok(()),
+            mode => Err(Refusal::State(mode)),
+        }
+    }
+    /// The mistake that needs it is made with the numbers of the set-up.
+    fn binding(&self) -> Option<Binding> {
+        None
+    }
 }
 
 /// A servo with a mistake, for a set-up of the attack.
@@ -76,11 +162,16 @@ pub fn double<'a>(setup: &'a Setup, mistake: Mistake) -> Box<dyn Servo + 'a> {
     }
     // A set-up of its own lives until the tests end; there are some hundred, of 10 kB each.
     let own: &Setup = Box::leak(Box::new(mistaken(setup, mistake)));
-    Box::new(Double::new(own, setup, mistake))
+    Box::new(Double::new(HostServo::new(own), setup, mistake))
+}
+
+/// A whole device with a mistake.
+pub fn whole_double<'a>(device: WholeDevice, setup: &'a Setup, mistake: Mistake) -> Box<dyn Whole + 'a> {
+    Box::new(Double::new(device, setup, mistake))
 }
 
 /// A set-up as the servo with a mistake has it.
-fn mistaken(setup: &Setup, mistake: Mistake) -> Setup {
+pub fn mistaken(setup: &Setup, mistake: Mistake) -> Setup {
     match mistake {
         Mistake::WideTolerance => setup.with_image(|image| {
             let nm = image.window.tolerance.nm();
@@ -111,9 +202,11 @@ fn mistaken(setup: &Setup, mistake: Mistake) -> Setup {
 }
 
 /// The servo with a mistake.
-struct Double<'a> {
+struct Double<S> {
     mistake: Mistake,
-    servo: HostServo<'a>,
+    servo: S,
+    binding: Binding,
+    max_lost: u32,
     axes: u8,
     tick_us: u64,
     max_step_nm: i64,
@@ -133,14 +226,20 @@ struct Double<'a> {
     heard_us: u64,
     /// Mode that is shown instead of the servo's.
     shown: Option<Mode>,
+    /// It shows `Bypass` in `Off`.
+    awake: bool,
+    /// Name of the image whose upload was begun last.
+    begun: u32,
 }
 
-impl<'a> Double<'a> {
-    fn new(own: &'a Setup, setup: &Setup, mistake: Mistake) -> Self {
+impl<S: Inside> Double<S> {
+    fn new(servo: S, setup: &Setup, mistake: Mistake) -> Self {
         let [image, _] = setup.images();
         Self {
             mistake,
-            servo: HostServo::new(own),
+            servo,
+            binding: image.settings().binding,
+            max_lost: setup.settings().rewriter.max_lost_frames,
             axes: setup.settings().axes,
             tick_us: 1_000_000u64.div_ceil(setup.settings().rewriter.tick_hz.into()),
             max_step_nm: setup.settings().rewriter.max_step.nm(),
@@ -155,7 +254,35 @@ impl<'a> Double<'a> {
             ahead_us: 0,
             heard_us: 0,
             shown: None,
+            awake: false,
+            begun: 0,
         }
+    }
+
+    /// What is made of a command that the servo has answered.
+    fn commanded(&mut self, command: &Command, mut done: Result<(), Refusal>, now_us: u64) -> Result<(), Refusal> {
+        if let Command::Arm(request) = command {
+            let mut request = *request;
+            done = match (self.mistake, done) {
+                (Mistake::SpentListIgnored, Err(Refusal::PartRepeated { .. })) => {
+                    request.part_serial = request.part_serial.wrapping_add(1 << 24);
+                    self.servo.command(&Command::Arm(request), now_us)
+                }
+                (Mistake::BindingIgnored, Err(Refusal::Identity { .. })) => {
+                    request.binding = self.servo.binding().unwrap_or(self.binding);
+                    self.servo.command(&Command::Arm(request), now_us)
+                }
+                (Mistake::ArmedInFault, Err(Refusal::State(Mode::Fault))) => Ok(()),
+                (_, done) => done,
+            };
+            if done.is_ok() {
+                self.request = Some(request);
+            }
+        }
+        if done.is_ok() {
+            self.shown = None;
+        }
+        done
     }
 
     /// What is done before the servo gets a setpoint.
@@ -166,7 +293,7 @@ impl<'a> Double<'a> {
                 (setpoint.spindle_millirpm, setpoint.spindle_age_ticks) = (self.spindle_millirpm, 0);
             }
             Mistake::GapFollowed => {
-                let most = self.servo.endpoint().settings().rewriter.max_lost_frames;
+                let most = self.max_lost;
                 if let Some((told, came)) = self.told {
                     let ahead = setpoint.sequence.wrapping_sub(came);
                     let missing = ahead.wrapping_sub(1);
@@ -179,14 +306,12 @@ impl<'a> Double<'a> {
                 self.ahead_us += self.tick_us.saturating_sub(from_last);
             }
             Mistake::Deaf(reason) => {
-                let mut trial = self.servo.clone();
-                let quiet = trial.endpoint().state().reason() == Reason::None;
                 if reason != Reason::Jump && self.jumps(setpoint) {
                     // It is deaf to this one reason only, and stood elsewhere: this must not look like a way back.
                     setpoint.axes = setpoint.axes.map(|nm| nm.saturating_add(1_000 * self.max_step_nm));
                 }
-                trial.receive(&packet(setpoint, self.axes), now_us, 0);
-                if let (true, Some(last)) = (quiet && trial.endpoint().state().reason() == reason, self.last) {
+                let ends = self.servo.would_end(setpoint, self.axes, now_us) == Some(reason);
+                if let (true, Some(last)) = (ends, self.last) {
                     *setpoint = Setpoint { sequence: setpoint.sequence, ..last };
                 }
             }
@@ -276,7 +401,7 @@ fn read(bytes: &[u8], axes: u8) -> Option<Setpoint> {
     SetpointFrame::decode(unstuff(&mut copy)?, axes).ok()
 }
 
-impl Servo for Double<'_> {
+impl<S: Inside> Servo for Double<S> {
     fn receive(&mut self, bytes: &[u8], now_us: u64, delay_us: u32) -> Option<Output> {
         let delay_us = if self.mistake == Mistake::LateAnswerGiven { 0 } else { delay_us };
         let was_open = std::mem::replace(&mut self.open, bytes.last() != Some(&0));
@@ -301,10 +426,10 @@ impl Servo for Double<'_> {
         self.before(&mut told, now_us);
         self.came = Some(came);
         let at_us = now_us + self.ahead_us;
-        let accepted = self.servo.endpoint().counters().accepted;
+        let accepted = self.servo.accepted();
         let answer = self.servo.receive(&packet(&told, self.axes), at_us, delay_us);
         self.heard_us = at_us;
-        if self.servo.endpoint().counters().accepted != accepted {
+        if self.servo.accepted() != accepted {
             self.told = Some((told.sequence, came.sequence));
         }
         let Some(mut output) = answer else {
@@ -329,37 +454,14 @@ impl Servo for Double<'_> {
     fn command(&mut self, command: &Command, now_us: u64) -> Result<(), Refusal> {
         let now_us = now_us + self.ahead_us;
         if self.mistake == Mistake::DisarmIgnored && *command == Command::Disarm {
-            return self.servo.clone().command(command, now_us);
+            return self.servo.would_disarm(now_us);
         }
         if self.mistake == Mistake::RampStands && self.mode() == Mode::Fault {
             return Err(Refusal::State(Mode::Fault));
         }
-        let mut done = self.servo.command(command, now_us);
-        if let Command::Arm(request) = command {
-            let mut request = *request;
-            done = match (self.mistake, done) {
-                (Mistake::SpentListIgnored, Err(Refusal::PartRepeated { .. })) => {
-                    request.part_serial = request.part_serial.wrapping_add(1 << 24);
-                    self.servo.command(&Command::Arm(request), now_us)
-                }
-                (Mistake::BindingIgnored, Err(Refusal::Identity { .. })) => {
-                    let image = self.servo.image().map(|image| image.settings().binding);
-                    request.binding = image.unwrap_or(request.binding);
-                    self.servo.command(&Command::Arm(request), now_us)
-                }
-                (Mistake::ArmedInFault, Err(Refusal::State(Mode::Fault))) => Ok(()),
-                (_, done) => done,
-            };
-            if done.is_ok() {
-                self.request = Some(request);
-            }
-        }
-        if done.is_ok() {
-            self.shown = None;
-        }
-        done
+        let done = self.servo.command(command, now_us);
+        self.commanded(command, done, now_us)
     }
-
     fn reset(&mut self) {
         self.servo.reset();
         (self.open, self.told, self.last, self.came) = (false, None, None, None);
@@ -374,10 +476,106 @@ impl Servo for Double<'_> {
     fn mode(&self) -> Mode {
         match self.shown {
             Some(mode) if self.servo.mode() != Mode::Off => mode,
+            _ if self.awake => Mode::Bypass,
             _ => self.servo.mode(),
         }
     }
     fn drive_enable(&self) -> bool {
         self.servo.drive_enable() || self.mistake == Mistake::EnabledInOff
+    }
+}
+
+impl Double<WholeDevice> {
+    /// What is made of a request and the device's answer to it.
+    fn mend(&mut self, ask: &Ask<'_>, answer: &mut Result<Reply<'_>, Denial>, now_us: u64) {
+        if let (Ask::Begin { crc, .. }, Ok(_)) = (ask, &*answer) {
+            self.begun = *crc;
+        }
+        let taken = match &*answer {
+            Err(Denial::Untrusted(SignatureError::RolledBack { .. })) => self.mistake == Mistake::CounterIgnored,
+            Err(Denial::Untrusted(_)) => self.mistake == Mistake::SignatureIgnored,
+            _ => false,
+        };
+        if taken && matches!(ask, Ask::Commit) {
+            *answer = Ok(Reply::Committed { slot: 1, crc: self.begun });
+        }
+        match (self.mistake, ask, &*answer) {
+            (Mistake::RoleIgnored, _, Err(Denial::Access(_))) => *answer = Ok(Reply::Done),
+            (Mistake::ActivationForgotten, Ask::Activate { .. }, Ok(_)) => self.servo.exchange_image(None),
+            _ => {}
+        }
+        let command = match *ask {
+            Ask::AcknowledgeDrivesDisabled => Command::Acknowledge,
+            Ask::Arm(request) => Command::Arm(request),
+            Ask::Disarm => Command::Disarm,
+            _ => return,
+        };
+        let done = match &*answer {
+            Ok(_) => Ok(()),
+            Err(Denial::Refused(refusal)) => Err(*refusal),
+            Err(_) => return,
+        };
+        match self.commanded(&command, done, now_us) {
+            Ok(()) => {
+                *answer = Ok(Reply::Done);
+                self.shown = None;
+            }
+            Err(refusal) => *answer = Err(Denial::Refused(refusal)),
+        }
+    }
+}
+
+impl Whole for Double<WholeDevice> {
+    fn told(&mut self, bytes: &[u8], now_us: u64, answer: &mut Vec<u8>) -> usize {
+        let at_us = now_us + self.ahead_us;
+        let mut copy = bytes.strip_suffix(&[0]).unwrap_or(bytes).to_vec();
+        let request = decode_request(&mut copy).ok();
+        let withheld = match request.as_ref().map(|(request, _)| &request.ask) {
+            Some(Ask::Configure(_)) if self.mistake == Mistake::SettingsForgotten => Some(Ok(())),
+            Some(Ask::Disarm) if self.mistake == Mistake::DisarmIgnored => Some(self.servo.would_disarm(at_us)),
+            _ => None,
+        };
+        let mut packet = [0; PACKET_BYTES];
+        let Some((Request { id, ask }, _)) = request else { return self.servo.told(bytes, at_us, answer) };
+        if let Some(done) = withheld {
+            let done = done.map(|()| Reply::Done).map_err(Denial::Refused);
+            let used = encode(&Response { id, answer: done }, &mut packet).unwrap();
+            *answer = packet[..used - 1].to_vec();
+            return 1;
+        }
+        let count = self.servo.told(bytes, at_us, answer);
+        let mut given = answer.clone();
+        let Ok(Response { id, answer: mut reply }) = decode::<Response<'_>>(&mut given) else { return count };
+        self.mend(&ask, &mut reply, at_us);
+        let id = if self.mistake == Mistake::AnswerOfAnother { id ^ 1 } else { id };
+        let used = encode(&Response { id, answer: reply }, &mut packet).unwrap();
+        *answer = packet[..used - 1].to_vec();
+        if self.mistake == Mistake::AnswerDamaged
+            && let Some(last) = answer.last_mut()
+        {
+            *last ^= 0x10;
+        }
+        count
+    }
+    fn take_restart(&mut self) -> Option<Restart> {
+        self.servo.take_restart()
+    }
+    fn reset_for(&mut self, cause: ResetCause, now_us: u64) {
+        self.servo.reset_for(cause, now_us + self.ahead_us);
+        (self.open, self.told, self.last, self.came) = (false, None, None, None);
+        (self.output, self.shown, self.request) = (None, None, None);
+        self.awake = self.mistake == Mistake::AwakeAfterReset;
+    }
+    fn axes(&mut self) -> u8 {
+        self.servo.axes()
+    }
+    fn cut(&mut self, cut: Cut) {
+        self.servo.cut(cut);
+    }
+    fn compute(&mut self, workspace: &mut Workspace<'_>) {
+        self.servo.compute(workspace);
+    }
+    fn into_device(self: Box<Self>) -> WholeDevice {
+        self.servo
     }
 }

@@ -82,8 +82,7 @@ impl Link {
             deadline_us: settings.deadline_us.into(),
             silence_us: settings.silence_us.into(),
             max_lost: settings.rewriter.max_lost_frames,
-            // Two thirds of 32 nominal intervals, less what whole microseconds hide.
-            shortest_us: (64_000_000 / (3 * u64::from(settings.rewriter.tick_hz))).saturating_sub(1),
+            shortest_us: shortest_us(settings),
             partial: vec![],
             sent: VecDeque::new(),
             arrived: None,
@@ -102,6 +101,17 @@ impl Link {
             touched: false,
             hid: false,
         }
+    }
+
+    /// Other settings: the pace is to be known anew.
+    pub fn configured(&mut self, settings: &DeviceSettings) {
+        self.deadline_us = settings.deadline_us.into();
+        self.silence_us = settings.silence_us.into();
+        self.max_lost = settings.rewriter.max_lost_frames;
+        self.shortest_us = shortest_us(settings);
+        self.whole = 0;
+        self.answered_us.clear();
+        self.wholes_us.clear();
     }
 
     pub fn sent(&mut self, packet: &[u8], setpoint: &Setpoint) {
@@ -252,6 +262,11 @@ impl Link {
         self.answered_us.clear();
         self.wholes_us.clear();
     }
+}
+
+/// Two thirds of 32 nominal intervals, less what whole microseconds hide.
+fn shortest_us(settings: &DeviceSettings) -> u64 {
+    (64_000_000 / (3 * u64::from(settings.rewriter.tick_hz))).saturating_sub(1)
 }
 
 fn remember(times: &mut VecDeque<u64>, us: u64) {

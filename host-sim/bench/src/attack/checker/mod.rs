@@ -27,6 +27,19 @@ use super::setup::Setup;
 use super::tally::Tally;
 use crate::traffic::Command;
 
+/// Rules of what goes out and of place; none where the limits of the image do not go with the rate.
+fn bounds(setup: &Setup) -> Option<(Bounds, Course)> {
+    let [image, _] = setup.images();
+    let settings = setup.settings();
+    // The machine's caps count where they are lower.
+    let mut limits = image.settings().limits;
+    limits.slew_nm_per_s = limits.slew_nm_per_s.min(settings.rewriter.correction_slew_nm_per_s);
+    limits.acceleration_nm_per_s2 =
+        limits.acceleration_nm_per_s2.min(settings.rewriter.correction_acceleration_nm_per_s2);
+    let ramp_ticks = Limits::new(&limits, settings.rewriter.tick_hz).ok()?.ramp_ticks();
+    Some((Bounds::new(&limits, settings, ramp_ticks), Course::new(&image, settings, ramp_ticks)))
+}
+
 /// The checker of one session.
 #[derive(Clone, Debug)]
 pub struct Checker {
@@ -52,20 +65,13 @@ impl Checker {
     /// # Panics
     /// Never: the limits of a set-up fit its settings.
     pub fn new(setup: &Setup) -> Self {
-        let [image, _] = setup.images();
+        let (bounds, course) = bounds(setup).expect("limits that go with the rate");
         let settings = *setup.settings();
-        // The machine's caps count where they are lower.
-        let mut limits = image.settings().limits;
-        limits.slew_nm_per_s = limits.slew_nm_per_s.min(settings.rewriter.correction_slew_nm_per_s);
-        limits.acceleration_nm_per_s2 =
-            limits.acceleration_nm_per_s2.min(settings.rewriter.correction_acceleration_nm_per_s2);
-        let hz = settings.rewriter.tick_hz;
-        let ramp_ticks = Limits::new(&limits, hz).expect("limits that go with the rate").ramp_ticks();
         Self {
             link: Link::new(&settings),
             arming: Arming::new(setup),
-            bounds: Bounds::new(&limits, &settings, ramp_ticks),
-            course: Course::new(&image, &settings, ramp_ticks),
+            bounds,
+            course,
             settings,
             mode: Mode::Off,
             acknowledged: false,
@@ -75,6 +81,15 @@ impl Checker {
             ended: vec![],
             settled: [0; SETTLED.len()],
         }
+    }
+
+    /// In `Off` the settings became those of a set-up that is otherwise the same. Says whether they go with its images; nothing has
+    /// changed if not.
+    pub fn configured(&mut self, setup: &Setup) -> bool {
+        let Some((bounds, course)) = bounds(setup) else { return false };
+        (self.bounds, self.course, self.settings) = (bounds, course, *setup.settings());
+        self.link.configured(&self.settings);
+        true
     }
 
     /// A frame goes into the cable.
