@@ -27,30 +27,34 @@ pub(super) struct BlockWords<'s> {
 }
 
 impl<'s> BlockWords<'s> {
-    /// Takes the words of a block, whose codes mean what they do in a dialect.
-    pub(super) fn gather(sentence: &'s Sentence<'_>, dialect: Dialect) -> Result<Self, GcodeError> {
-        let mut block = Self {
-            words: &sentence.words,
+    /// Of a block, nothing taken.
+    pub(super) const fn of(words: &'s [Word]) -> Self {
+        Self {
+            words,
             present: 0,
             used: 0,
             groups: 0,
             codes: heapless::Vec::new(),
             m: heapless::Vec::new(),
             program: None,
-        };
+        }
+    }
+
+    /// Takes the words of the block, whose codes mean what they do in a dialect.
+    pub(super) fn gather(&mut self, sentence: &Sentence<'_>, dialect: Dialect) -> Result<(), GcodeError> {
         let refused = |kind, span| GcodeError::new(kind, &sentence.line, span).in_file(sentence.source.file);
         let mut twice = None;
-        for word in &sentence.words {
-            let again = block.take(word, dialect).map_err(|kind| refused(kind, word.span))?;
+        for word in self.words {
+            let again = self.take(word, dialect).map_err(|kind| refused(kind, word.span))?;
             twice = twice.or(again.then_some(word));
         }
         // The arguments of a macro may come in several sets of I J K; Mazak names the next tool beside the one that M6 takes.
-        let of_macro = block.code(Group::OneShot).is_some_and(|(code, _)| code.tenths() == 650);
-        let changes = dialect == Dialect::Fanuc && block.m.iter().any(|m| m.number == 6);
+        let of_macro = self.code(Group::OneShot).is_some_and(|(code, _)| code.tenths() == 650);
+        let changes = dialect == Dialect::Fanuc && self.m.iter().any(|m| m.number == 6);
         if let Some(word) = twice.filter(|word| !(of_macro || changes && word.letter == b'T')) {
             return Err(refused(GcodeErrorKind::DuplicateWord { letter: word.letter.to_ascii_uppercase() }, word.span));
         }
-        Ok(block)
+        Ok(())
     }
 
     const fn has_words(&self) -> bool {

@@ -205,7 +205,7 @@ impl Source {
 #[derive(Clone, Copy)]
 pub struct Event<'a> {
     /// What happens.
-    pub canon: Canon,
+    pub canon: &'a Canon,
     /// Where it is written.
     pub source: Source,
     /// The modes in force when it happens, this step's own change included.

@@ -73,7 +73,7 @@ pub(super) fn survey(program: &[u8], options: Options) -> Result<Vec<Move>, Gcod
         }
         motion_before = event.modal.motion;
         let unknown = Axes::UNKNOWN;
-        let (kind, from, to) = match event.canon {
+        let (kind, from, to) = match *event.canon {
             Canon::Traverse { from, to } => (Kind::Traverse, from, to),
             Canon::Feed { from, to } => (Kind::Feed, from, to),
             Canon::Arc { from, to, curve, turns, .. } => (Kind::Arc(curve, turns), from, to),

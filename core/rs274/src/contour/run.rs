@@ -128,7 +128,7 @@ impl RunReader {
         if self.within.is_some_and(|lines| !lines.contains(event.source.line)) {
             return Ok(Progress { ended: self.run.take(), block: None });
         }
-        match event.canon {
+        match *event.canon {
             Canon::Compensation { wall, .. } => self.offset = Some(wall.is_some()),
             Canon::Traverse { from, to } if from.point() != to.point() => self.offset = None,
             _ => {}
@@ -137,7 +137,7 @@ impl RunReader {
         if core::mem::replace(&mut self.auxiliary, event.modal.auxiliary) != event.modal.auxiliary {
             return Ok(Progress { ended: self.run.take(), block: None });
         }
-        if let Canon::Feed { from, to } = event.canon
+        if let Canon::Feed { from, to } = *event.canon
             && from.z == to.z
             && from.point().is_none()
             && self.unknown.is_none()
@@ -146,7 +146,7 @@ impl RunReader {
             self.unknown = Some((start_unknown(from), LineRange { first: line, last: line }, event.source.block));
         }
         let down = self.heights(event);
-        match step(event.canon)? {
+        match step(*event.canon)? {
             Step::Pass => Ok(Progress::default()),
             Step::Break => {
                 let ended = self.run.take().map(|run| Run {
@@ -166,7 +166,7 @@ impl RunReader {
 
     /// Notes what a step does to the height of the tool; whether it goes down.
     fn heights(&mut self, event: &Event<'_>) -> bool {
-        let (from, to) = match event.canon {
+        let (from, to) = match *event.canon {
             Canon::Traverse { from, to }
             | Canon::Feed { from, to }
             | Canon::Arc { from, to, .. }
@@ -190,7 +190,7 @@ impl RunReader {
 
     fn cut(&mut self, event: &Event<'_>, curve: Curve) -> Progress {
         let modal = event.modal;
-        let z = match event.canon {
+        let z = match *event.canon {
             Canon::Feed { to, .. } | Canon::Arc { to, .. } => to.z,
             _ => None,
         };

@@ -31,7 +31,7 @@ impl Execution<'_, '_, '_> {
 impl Execution<'_, '_, '_> {
     /// A length word in nanometres.
     pub(super) fn length(&mut self, word: Word) -> Result<Offset, GcodeError> {
-        self.note_unit(word);
+        self.note_unit(&word);
         self.scaled(word, self.modal.units)
     }
 
@@ -42,20 +42,31 @@ impl Execution<'_, '_, '_> {
     }
 
     fn scaled(&mut self, word: Word, units: Units) -> Result<Offset, GcodeError> {
-        let nm = match word.value {
-            Number::Exact(number) if self.reads_points && !word.has_point(self.text) => {
-                self.pointless(word, number, units)
-            }
+        self.within_reach(&word, units).ok_or_else(|| self.out_of_range(&word))
+    }
+
+    /// The same; `None` beyond the farthest coordinate.
+    #[inline]
+    fn within_reach(&mut self, word: &Word, units: Units) -> Option<Offset> {
+        let nm = if self.reads_points { self.by_point(word, units) } else { word.value.nanometres(units) };
+        nm.filter(|nm| nm.unsigned_abs() <= FARTHEST_NM).map(Offset::from_nm)
+    }
+
+    fn out_of_range(&self, word: &Word) -> GcodeError {
+        self.error(GcodeErrorKind::OutOfRange { letter: word.letter }, word.span)
+    }
+
+    /// The nanometres of a number where it matters whether it has a point.
+    #[inline(never)]
+    fn by_point(&mut self, word: &Word, units: Units) -> Option<i64> {
+        match word.value {
+            Number::Exact(number) if !word.has_point(self.text) => self.pointless(word, number, units),
             value => value.nanometres(units),
-        };
-        match nm {
-            Some(nm) if nm.unsigned_abs() <= FARTHEST_NM => Ok(Offset::from_nm(nm)),
-            _ => Err(self.error(GcodeErrorKind::OutOfRange { letter: word.letter }, word.span)),
         }
     }
 
     /// The nanometres of a number without a point.
-    fn pointless(&mut self, word: Word, number: Decimal, units: Units) -> Option<i64> {
+    fn pointless(&mut self, word: &Word, number: Decimal, units: Units) -> Option<i64> {
         match self.options.decimal {
             PointlessLength::Least => i64::try_from(number.times(units.least_increment())).ok(),
             PointlessLength::Calculator => {
@@ -91,7 +102,8 @@ impl Execution<'_, '_, '_> {
     }
 
     /// Warns once when a length is read before the program names its unit.
-    pub(super) fn note_unit(&mut self, word: Word) {
+    #[inline]
+    pub(super) fn note_unit(&mut self, word: &Word) {
         if !self.units_given {
             self.units_given = true;
             self.warn(WarningKind::UnitsAssumed, word.span);
@@ -103,15 +115,14 @@ impl Execution<'_, '_, '_> {
     }
 
     /// Where an axis word leads; `None` when it is incremental from an unknown position.
-    pub(super) fn target(&mut self, word: Word, axis: usize) -> Result<Option<Position>, GcodeError> {
-        let by = self.length(word)?;
+    #[inline]
+    pub(super) fn target(&mut self, word: &Word, axis: usize) -> Result<Option<Position>, GcodeError> {
+        self.note_unit(word);
+        let Some(by) = self.within_reach(word, self.modal.units) else { return Err(self.out_of_range(word)) };
         let from = if self.modal.absolute { Some(Position::ZERO) } else { self.at.get(axis) };
         let Some(from) = from else { return Ok(None) };
         let to = from + by;
-        if to.nm().unsigned_abs() > FARTHEST_NM {
-            return Err(self.error(GcodeErrorKind::OutOfRange { letter: word.letter }, word.span));
-        }
-        Ok(Some(to))
+        if to.nm().unsigned_abs() > FARTHEST_NM { Err(self.out_of_range(word)) } else { Ok(Some(to)) }
     }
 
     /// Uses the axis words: where they lead. Axes that turn, U, V and W are moved at once.
@@ -123,7 +134,7 @@ impl Execution<'_, '_, '_> {
         }
         for axis in 0..3 {
             if let Some(word) = block.use_word(self.letter(axis)) {
-                self.lead(&mut to, axis, word)?;
+                self.lead(&mut to, axis, &word)?;
             }
         }
         self.move_auxiliary(block)?;
@@ -131,7 +142,7 @@ impl Execution<'_, '_, '_> {
     }
 
     /// Puts an axis where its word leads.
-    pub(super) fn lead(&mut self, to: &mut Axes, axis: usize, word: Word) -> Result<(), GcodeError> {
+    pub(super) fn lead(&mut self, to: &mut Axes, axis: usize, word: &Word) -> Result<(), GcodeError> {
         let Some(place) = self.target(word, axis)? else {
             return Err(self.error(GcodeErrorKind::PositionUnknown { axis: word.letter }, word.span));
         };

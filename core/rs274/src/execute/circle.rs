@@ -93,29 +93,26 @@ impl Execution<'_, '_, '_> {
         let span = self.block_span();
         let tolerance = if self.modal.units == Units::Inches { INCH_TOLERANCE } else { ARC_TOLERANCE };
         let about = |centre| Curve::arc_within(start, end, centre, ccw, tolerance);
-        let read = about(centre);
+        let error = match about(centre) {
+            Ok(curve) => {
+                if absolute.is_some_and(|other| other != centre) {
+                    self.centres = ArcCentres::Incremental;
+                }
+                return Ok((centre, curve));
+            }
+            Err(error) => error,
+        };
         // A full circle is one about any centre.
         let other = absolute
             .filter(|other| *other != centre && start != end)
             .and_then(|other| Some((other, about(other).ok()?)));
-        match (read, other) {
-            (Ok(curve), None) => {
-                if absolute.is_some_and(|other| other != centre) {
-                    self.centres = ArcCentres::Incremental;
-                }
-                Ok((centre, curve))
-            }
-            // Both fit.
-            (Ok(curve), Some(_)) => {
-                self.centres = ArcCentres::Incremental;
-                Ok((centre, curve))
-            }
-            (Err(_), Some(other)) if self.centres == ArcCentres::Detect => {
+        match other {
+            Some(other) if self.centres == ArcCentres::Detect => {
                 self.warn(WarningKind::CentresFoundAbsolute, span);
                 self.modal.absolute_centres = true;
                 Ok(other)
             }
-            (Err(error), other) => {
+            other => {
                 if let ArcError::RadiusMismatch { start: a, end: b } = error {
                     let limit = tolerance.nm().max(a.nm().min(b.nm()) / 1000).saturating_add(digit);
                     let wider = Curve::arc_within(start, end, centre, ccw, Offset::from_nm(limit));

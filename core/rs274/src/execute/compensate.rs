@@ -162,10 +162,10 @@ impl<'p> Execution<'p, '_, '_> {
         let Some(sink) = self.sink.take() else {
             return Ok(());
         };
-        let Waiting { canon, source, modal, text } = *step;
-        let answer = sink(&Event { canon, source, modal: &modal, text, parameters: self });
+        let Waiting { canon, source, modal, text } = step;
+        let answer = sink(&Event { canon, source: *source, modal, text, parameters: self });
         self.sink = Some(sink);
-        answer.map_err(|kind| error_of(source, kind, source.block))
+        answer.map_err(|kind| error_of(*source, kind, source.block))
     }
 
     /// Gives a step that has waited for a corner on to compensation, or to the sink.

@@ -32,7 +32,7 @@ impl Execution<'_, '_, '_> {
         let mut via = self.at;
         for axis in 0..3 {
             if let Some(word) = block.use_word(self.letter(axis)) {
-                let through = self.target(word, axis)?;
+                let through = self.target(&word, axis)?;
                 via.set(axis, through);
             }
         }

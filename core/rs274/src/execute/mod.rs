@@ -181,7 +181,8 @@ impl<'p, 's, 'm> Execution<'p, 's, 'm> {
             return self.klartext(sentence);
         }
         self.restore_returning()?;
-        let mut block = BlockWords::gather(sentence, self.options.dialect)?;
+        let mut block = BlockWords::of(&sentence.words);
+        block.gather(sentence, self.options.dialect)?;
         if sentence.has_comments {
             self.comments()?;
         }
@@ -239,7 +240,7 @@ impl<'p, 's, 'm> Execution<'p, 's, 'm> {
         let Some(sink) = self.sink.take() else {
             return Ok(());
         };
-        let event = Event { canon, source: self.source, modal: &self.modal, text: self.text, parameters: self };
+        let event = Event { canon: &canon, source: self.source, modal: &self.modal, text: self.text, parameters: self };
         let answer = sink(&event);
         self.sink = Some(sink);
         answer.map_err(|kind| self.error(kind, span))

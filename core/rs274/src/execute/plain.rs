@@ -46,7 +46,7 @@ impl<'p> Execution<'p, '_, '_> {
             let mut to = self.at;
             for (axis, word) in axes.into_iter().enumerate() {
                 if let Some(word) = word {
-                    self.lead(&mut to, axis, *word)?;
+                    self.lead(&mut to, axis, word)?;
                 }
             }
             if motion == Motion::Traverse {

@@ -61,7 +61,7 @@ impl Execution<'_, '_, '_> {
         let feed = if self.modal.feed_mode == FeedMode::InverseTime {
             word.value.real()
         } else {
-            self.note_unit(word);
+            self.note_unit(&word);
             match self.modal.units {
                 Units::Millimetres => word.value.real(),
                 Units::Inches => word.value.real_ratio(254, 10),
@@ -100,6 +100,7 @@ impl Execution<'_, '_, '_> {
     ///
     /// # Errors
     /// In G93 every block with a cutting move needs an F of its own.
+    #[inline]
     pub(super) fn check_feed(&mut self) -> Result<(), GcodeError> {
         if self.modal.feed_mode == FeedMode::InverseTime && !self.feed_given {
             return Err(self.word_missing(GCode::from_tenths(930), b'F', self.block_span()));
@@ -111,9 +112,9 @@ impl Execution<'_, '_, '_> {
     }
 
     /// Refuses a cutting move in G95 with the spindle's speed 0.
+    #[inline]
     pub(super) fn check_revolutions(&self) -> Result<(), GcodeError> {
-        let stopped = self.modal.speed.is_none_or(|s| s == 0);
-        if self.modal.feed_mode == FeedMode::PerRevolution && stopped {
+        if self.modal.feed_mode == FeedMode::PerRevolution && self.modal.speed.is_none_or(|s| s == 0) {
             return Err(self.error(SettingError::FeedPerRevolution.into(), self.block_span()));
         }
         Ok(())

@@ -19,27 +19,28 @@ pub(super) fn read(line: &Line<'_>, sentence: &mut Sentence<'_>) -> bool {
 }
 
 fn words(line: &Line<'_>, sentence: &mut Sentence<'_>) -> Option<()> {
-    let mut rest = line.text;
-    while let Some((&byte, behind)) = rest.split_first() {
+    let text = line.text;
+    let mut at = 0usize;
+    while let Some(&byte) = text.get(at) {
         if matches!(byte, b' ' | b'\t') {
-            rest = behind;
+            at = at.saturating_add(1);
             continue;
         }
-        let letter = byte.to_ascii_uppercase();
+        // A digit or a point here goes on with the number before it, which is for the long way; letters become capitals.
+        let letter = byte & !0x20;
         if !letter.is_ascii_uppercase() || letter == b'O' {
             return None;
         }
-        let (value, len) = plain_number(behind)?;
-        let start = line.start.saturating_add(line.text.len().saturating_sub(rest.len()));
-        rest = behind.get(len..)?;
+        let (value, end) = plain_number(text, at.saturating_add(1))?;
         if letter != b'N' {
-            let span = Span { start, len: len.saturating_add(1) };
+            let span = Span { start: line.start.saturating_add(at), len: end.saturating_sub(at) };
             sentence.push(Word { letter, value: Number::Exact(value), span }).ok()?;
         } else if sentence.words.is_empty() && sentence.source.number.is_none() {
             sentence.source.number = Some(value);
         } else {
             return None;
         }
+        at = end;
     }
     Some(())
 }

@@ -135,9 +135,14 @@ impl<'p> Reader<'p> {
             return self.klartext(machine, sentence);
         }
         sentence.is_plain = plain::read(&line, sentence);
-        if sentence.is_plain {
-            return Ok(Read::Block);
-        }
+        if sentence.is_plain { Ok(Read::Block) } else { self.tokens(machine, sentence) }
+    }
+
+    /// Reads a line token by token.
+    // Not beside the short way, which needs no room on the stack.
+    #[inline(never)]
+    fn tokens(&self, machine: &mut impl Surroundings, sentence: &mut Sentence<'p>) -> Result<Read, GcodeError> {
+        let line = self.line;
         let mut assignments = Assignments::new();
         let mut begun = false;
         for token in Words::new(line) {

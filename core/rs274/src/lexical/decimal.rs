@@ -41,8 +41,13 @@ impl Decimal {
         is_point: impl Fn(u8) -> bool,
         is_blank: impl Fn(u8) -> bool,
     ) -> (&[u8], Result<Self, NumberError>) {
-        if let Some((value, end)) = Self::read_plain(input, &is_point, &is_blank) {
-            return (input.get(end..).unwrap_or(&[]), Ok(value));
+        if let Some((value, end)) = Self::read_plain(input, &is_point) {
+            let rest = input.get(end..).unwrap_or(&[]);
+            // Behind a blank the number may go on.
+            let next = rest.iter().find(|&&byte| !is_blank(byte));
+            if !next.is_some_and(|&byte| byte.is_ascii_digit() || is_point(byte)) {
+                return (rest, Ok(value));
+            }
         }
         let (mut mantissa, mut significant, mut decimals) = (0i64, 0u8, 0u8);
         let (mut negative, mut signed, mut point, mut any, mut too_large) = (false, false, false, false, false);
@@ -77,10 +82,10 @@ impl Decimal {
         };
         (input.get(end..).unwrap_or(&[]), value)
     }
-    /// The same of a number as programs nearly always write it: at most 18 digits, only a minus before them, nothing between them.
+    /// The same of a number as programs nearly always write it, to its first blank: at most 18 digits, only a minus before them.
     /// With the number of bytes read; `None` where the long way decides.
     #[inline]
-    fn read_plain(input: &[u8], is_point: impl Fn(u8) -> bool, is_blank: impl Fn(u8) -> bool) -> Option<(Self, usize)> {
+    fn read_plain(input: &[u8], is_point: impl Fn(u8) -> bool) -> Option<(Self, usize)> {
         let (negative, from) = match input.split_first() {
             Some((b'-', behind)) => (true, behind),
             _ => (false, input),
@@ -94,17 +99,6 @@ impl Decimal {
             (mantissa, rest) = digits(mantissa, behind);
             decimals = behind.len().wrapping_sub(rest.len());
             written = written.wrapping_add(decimals);
-        }
-        // Behind a blank the number may go on.
-        let mut behind = rest;
-        while let Some((&byte, further)) = behind.split_first() {
-            if !is_blank(byte) {
-                if byte.is_ascii_digit() || is_point(byte) {
-                    return None;
-                }
-                break;
-            }
-            behind = further;
         }
         if written == 0 || written > usize::from(DIGITS) {
             return None;
@@ -138,11 +132,16 @@ impl Decimal {
         div_rounded((self.mantissa as i128).saturating_mul(factor as i128), self.power())
     }
     /// The same, where 64 bits hold it.
+    #[inline]
     pub(super) fn in_64(self, factor: i64) -> Option<i64> {
         match self.whole_factor(factor).and_then(|whole| self.mantissa.checked_mul(whole)) {
             Some(product) => Some(product),
-            None => i64::try_from(self.times(factor)).ok(),
+            None => self.rounded_in_64(factor),
         }
+    }
+    #[cold]
+    fn rounded_in_64(self, factor: i64) -> Option<i64> {
+        i64::try_from(self.times(factor)).ok()
     }
     /// This number times a whole one, when that is a whole number.
     pub const fn exactly_times(self, factor: i64) -> Option<i64> {
@@ -242,10 +241,66 @@ pub(in super::super) fn number(input: &[u8]) -> (&[u8], Result<Decimal, NumberEr
     Decimal::read(input, |byte| byte == b'.', is_blank)
 }
 
-/// A number with nothing unusual in it at the start of a text, and its length; `None` where [`number`] decides.
+/// A number with nothing unusual in it at a place of a text, and the place behind it, where a blank, a digit or a point must not
+/// follow for it to be all of the number; `None` where [`number`] decides.
 #[inline]
-pub(in super::super) fn plain_number(input: &[u8]) -> Option<(Decimal, usize)> {
-    Decimal::read_plain(input, |byte| byte == b'.', is_blank)
+pub(in super::super) fn plain_number(text: &[u8], at: usize) -> Option<(Decimal, usize)> {
+    let negative = text.get(at) == Some(&b'-');
+    let first = at.saturating_add(usize::from(negative));
+    if let Some((digits, len)) = few_digits(eight_bytes(text, first)?) {
+        let end = first.saturating_add(len);
+        if len < 8 || !text.get(end).is_some_and(u8::is_ascii_digit) {
+            return Some((if negative { digits.negated() } else { digits }, end));
+        }
+    }
+    let (value, len) = Decimal::read_plain(text.get(at..)?, |byte| byte == b'.')?;
+    Some((value, at.saturating_add(len)))
+}
+
+/// The eight bytes at a place, the first of them lowest, with zeros for those behind the end of the text.
+#[inline]
+fn eight_bytes(text: &[u8], at: usize) -> Option<u64> {
+    let rest = text.get(at..)?;
+    if let Some(bytes) = rest.first_chunk() {
+        return Some(u64::from_le_bytes(*bytes));
+    }
+    let missing = 8usize.saturating_sub(rest.len()) as u32;
+    match text.last_chunk() {
+        Some(bytes) => Some(u64::from_le_bytes(*bytes).unbounded_shr(missing.saturating_mul(8))),
+        None => Some(rest.iter().rev().fold(0, |bytes, &byte| (bytes << 8) | u64::from(byte))),
+    }
+}
+
+/// The number that eight bytes begin with, all digits computed at once, and its length; `None` without a digit, and for eight.
+#[inline]
+const fn few_digits(bytes: u64) -> Option<(Decimal, usize)> {
+    const EACH: u64 = 0x0101_0101_0101_0101;
+    // Digits are now 0…9; the highest bit of all other bytes is set in `others`.
+    let bytes = bytes ^ (EACH * 0x30);
+    let others = (((bytes & (EACH * 0x7F)).wrapping_add(EACH * 0x76)) | bytes) & (EACH * 0x80);
+    // Bits of the digits before the point.
+    let whole = others.trailing_zeros() & 0x78;
+    if whole == 64 {
+        return None;
+    }
+    let (mut eight, mut count, mut len) = (bytes, whole, whole);
+    if (bytes >> whole) as u8 == b'.' ^ b'0' {
+        // Those behind it move up to them.
+        let before = (1u64 << whole).wrapping_sub(1);
+        eight = (bytes & before) | ((bytes >> 8) & !before);
+        len = (others & others.wrapping_sub(1)).trailing_zeros() & 0x78;
+        count = len.wrapping_sub(8);
+    }
+    if count == 0 {
+        return None;
+    }
+    // With zeros in front there are eight. Pairs, fours, all.
+    let eight = eight << (64u32.wrapping_sub(count) & 0x38);
+    let pairs = eight.wrapping_mul(10).wrapping_add(eight >> 8) & 0x00FF_00FF_00FF_00FF;
+    let fours = pairs.wrapping_mul(100).wrapping_add(pairs >> 16) & 0x0000_FFFF_0000_FFFF;
+    let mantissa = (fours & 0xFFFF).wrapping_mul(10_000).wrapping_add(fours >> 32) as i64;
+    let decimals = (count.wrapping_sub(whole) / 8) as u8;
+    Some((Decimal { mantissa, decimals }, (len / 8) as usize))
 }
 
 #[cfg(test)]
@@ -302,6 +357,13 @@ mod tests {
             let (short, rest) = read(&text);
             prop_assert_eq!(&short, &long);
             prop_assert!(short.is_err() || rest == left);
+        }
+
+        #[test]
+        fn eight_digits_at_once_are_read_as_one_by_one(text in "[-+]?[0-9]{0,9}[.]?[0-9]{0,9}[-0-9. X]{0,9}", more in "[0-9. X\u{80}]{0,9}", at in 0usize..3) {
+            let text = format!("{}{text}{more}", "G1X".get(..at).unwrap());
+            let one_by_one = Decimal::read_plain(text.as_bytes().get(at..).unwrap(), |byte| byte == b'.');
+            prop_assert_eq!(plain_number(text.as_bytes(), at), one_by_one.map(|(value, len)| (value, at + len)));
         }
 
         #[test]

@@ -22,6 +22,7 @@ const WHOLE: f64 = 1e-4;
 
 impl Number {
     /// Its length in whole nanometres; `None` beyond ±9.2 × 10⁹ mm and for what is no number.
+    #[inline]
     #[expect(clippy::float_arithmetic, reason = "a computed number leaves floating point here, rounded once")]
     pub fn nanometres(self, units: Units) -> Option<i64> {
         match self {

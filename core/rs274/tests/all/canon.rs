@@ -12,7 +12,7 @@ const P18: &[u8] = include_bytes!("../data/p18-corner.nc");
 fn steps(program: &[u8]) -> Vec<(u32, Canon)> {
     let mut steps = Vec::new();
     let run = interpret(Options::default(), program, &mut DeviceMemory::new().lend(), &mut |event| {
-        steps.push((event.source.line, event.canon));
+        steps.push((event.source.line, *event.canon));
         Ok(())
     });
     run.unwrap_or_else(|e| panic!("{e}"));
@@ -130,7 +130,7 @@ fn a_writer_can_change_one_word_and_keep_every_other_byte() {
     let mut written = Vec::new();
     let mut kept = 0;
     interpret(Options::default(), P18, &mut DeviceMemory::new().lend(), &mut |event| {
-        let Canon::Feed { from, to } = event.canon else { return Ok(()) };
+        let Canon::Feed { from, to } = *event.canon else { return Ok(()) };
         let line = Lines::new(P18).nth(event.source.line as usize - 1).ok_or(GcodeErrorKind::NoMotion)?;
         assert_eq!(line.span(), event.source.block);
         for token in Words::new(line) {
@@ -156,7 +156,7 @@ fn a_writer_can_change_one_word_and_keep_every_other_byte() {
 fn what_the_receiver_refuses_is_an_error_at_its_block() {
     let program = b"G21 G90\n  G0 X1 (one)\nM2";
     let refused =
-        interpret(Options::default(), program, &mut DeviceMemory::new().lend(), &mut |event| match event.canon {
+        interpret(Options::default(), program, &mut DeviceMemory::new().lend(), &mut |event| match *event.canon {
             Canon::Traverse { .. } => Err(GcodeErrorKind::NoContour),
             _ => Ok(()),
         });

@@ -50,7 +50,7 @@ fn run(program: &[u8]) -> (Vec<Move>, Option<GcodeError>) {
             let numbers = vec![first, second, number(centre.x), number(centre.y), rotation, third];
             moves.push(Move { kind: "arc", numbers });
         };
-        match event.canon {
+        match *event.canon {
             Canon::Arc { to, centre, counter_clockwise, turns, .. } => {
                 arc(Plane::Xy, to, centre, counter_clockwise, turns);
             }

@@ -17,7 +17,7 @@ fn run(program: &str) -> (Vec<Seen>, Result<(), GcodeError>) {
     let mut seen = Vec::new();
     let options = Options { start: Axes::ORIGIN, ..Options::default() };
     let result = interpret(options, program.as_bytes(), &mut DeviceMemory::new().lend(), &mut |event| {
-        match event.canon {
+        match *event.canon {
             Canon::Traverse { from, to } | Canon::Feed { from, to } | Canon::Arc { from, to, .. } => {
                 seen.push(Seen::Move { line: event.source.line, from, to });
             }

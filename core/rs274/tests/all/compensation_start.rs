@@ -15,7 +15,7 @@ fn moves(program: &str, dialect: Dialect, compensation: CompensationBy) -> Resul
     interpret(options, program.as_bytes(), &mut DeviceMemory::new().lend(), &mut |event| {
         let tenths = |p: Option<Position>| p.map_or("?".to_owned(), |p| format!("{}", p.nm() / 100_000));
         let place = |at: Axes| [at.x, at.y, at.z].map(tenths).join(",");
-        match event.canon {
+        match *event.canon {
             Canon::Traverse { to, .. } => moves.push(format!("T{}", place(to))),
             Canon::Feed { to, .. } => moves.push(format!("F{}", place(to))),
             Canon::Arc { to, centre, .. } => {

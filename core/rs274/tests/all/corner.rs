@@ -17,7 +17,7 @@ fn run(program: &str, options: Options<'_>) -> Result<Vec<Move>, GcodeError> {
         let at = |to: Axes, [a, b]: [usize; 2]| [a, b].map(|axis| to.get(axis).map_or(i64::MAX, Position::nm));
         let turn = |counter_clockwise: bool| if counter_clockwise { 'R' } else { 'L' };
         let line = event.source.line;
-        match event.canon {
+        match *event.canon {
             Canon::Traverse { to, .. } => moves.push(('T', line, at(to, [0, 1]), [0, 0])),
             Canon::Feed { to, .. } => {
                 let [first, second, _] = event.modal.plane.axes();
@@ -166,7 +166,7 @@ fn what_stands_between_the_two_lines_comes_behind_the_corner_in_its_order() {
     let mut memory = DeviceMemory::new();
     interpret(Options::default(), program.as_bytes(), &mut memory.lend(), &mut |event| {
         if event.source.line > 2 {
-            seen.push(match event.canon {
+            seen.push(match *event.canon {
                 Canon::Feed { .. } => 'f',
                 Canon::Arc { .. } => 'a',
                 Canon::Comment(_) => 'c',
@@ -177,7 +177,7 @@ fn what_stands_between_the_two_lines_comes_behind_the_corner_in_its_order() {
                 _ => '?',
             });
             // The arc is cut at the feed of its block.
-            if let Canon::Arc { .. } = event.canon {
+            if let Canon::Arc { .. } = *event.canon {
                 assert_eq!(event.modal.feed.map(truepath_units::Real::bits), Some(100 << 32));
             }
         }

@@ -9,7 +9,7 @@ fn end(program: &str, options: Options<'_>) -> Result<([i64; 3], i64, Vec<Warnin
     let (mut at, mut feed) = (Axes::UNKNOWN, 0);
     let mut memory = DeviceMemory::new();
     let summary = interpret(options, program.as_bytes(), &mut memory.lend(), &mut |event| {
-        if let Canon::Traverse { to, .. } | Canon::Feed { to, .. } | Canon::Arc { to, .. } = event.canon {
+        if let Canon::Traverse { to, .. } | Canon::Feed { to, .. } | Canon::Arc { to, .. } = *event.canon {
             at = to;
         }
         feed = event.modal.feed.map_or(0, truepath_units::Real::bits);

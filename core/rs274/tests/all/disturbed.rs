@@ -135,7 +135,7 @@ fn ours(program: &[u8], dialect: Dialect) -> (String, Option<GcodeError>) {
     let mut said = String::new();
     let mm = |p: Option<Position>| p.map_or(f64::NAN, |p| p.nm() as f64 / 1e6);
     let run = interpret(options, program, &mut buffers.lend(), &mut |event| {
-        let written = match event.canon {
+        let written = match *event.canon {
             Canon::Traverse { to, .. } => write!(said, "T{:.3},{:.3},{:.3}|", mm(to.x), mm(to.y), mm(to.z)),
             Canon::Feed { to, .. } => write!(said, "F{:.3},{:.3},{:.3}|", mm(to.x), mm(to.y), mm(to.z)),
             Canon::Arc { to, centre, counter_clockwise, turns, .. } => {

@@ -12,7 +12,7 @@ fn said_with(program: &Program<'_>, options: Options<'_>) -> (Vec<String>, Optio
     let mut memory = Box::new(HostMemory::new());
     let mut said = Vec::new();
     let run = interpret(options, *program, &mut memory.lend(), &mut |event| {
-        match event.canon {
+        match *event.canon {
             Canon::Comment(body) => {
                 let comment = Comment::of(body.of(event.text));
                 if comment.kind != CommentKind::Plain {

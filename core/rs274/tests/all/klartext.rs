@@ -30,7 +30,7 @@ fn run(program: &str, options: Options<'_>) -> Result<Read, GcodeError> {
     let summary = Interpreter::new(options).run(program.as_bytes(), &mut memory.lend(), &mut |event| {
         let at = |to: Axes| [um(to.x), um(to.y), um(to.z)];
         let line = event.source.line;
-        match event.canon {
+        match *event.canon {
             Canon::Traverse { to, .. } => read.moves.push(('T', line, at(to), [0; 2])),
             Canon::Feed { to, .. } => read.moves.push(('F', line, at(to), [0; 2])),
             Canon::Arc { to, centre, counter_clockwise, .. } => {

@@ -28,7 +28,7 @@ fn moves(program: &str) -> Result<Vec<String>, String> {
         format!("{x} {y} {z}").replace("-0.0000", "0.0000")
     };
     let run = interpret(options, program.as_bytes(), &mut memory.lend(), &mut |event| {
-        let (kind, to) = match event.canon {
+        let (kind, to) = match *event.canon {
             Canon::Traverse { to, .. } => ("T", to),
             Canon::Feed { to, .. } => ("F", to),
             Canon::Arc { to, .. } | Canon::PlaneArc { to, .. } => ("A", to),

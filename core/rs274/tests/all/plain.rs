@@ -25,7 +25,7 @@ fn read(text: &str, options: Options<'_>) -> Read {
         &mut memory.lend(),
         &mut |event| {
             if !matches!(event.canon, Canon::Comment(_)) {
-                steps.push((event.canon, *event.modal, event.source.line));
+                steps.push((*event.canon, *event.modal, event.source.line));
             }
             Ok(())
         },

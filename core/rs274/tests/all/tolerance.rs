@@ -21,7 +21,7 @@ fn read_with(program: &str, options: Options<'_>) -> Result<(String, Vec<&'stati
     let tenths = |p: Option<Position>| p.map_or("?".to_owned(), |p| format!("{}", p.nm() / 100_000));
     let place = |at: Axes| [at.x, at.y, at.z].map(tenths).join(",");
     let run = interpret(options, program.as_bytes(), &mut DeviceMemory::new().lend(), &mut |event| {
-        match event.canon {
+        match *event.canon {
             Canon::Traverse { to, .. } => moves.push(format!("T{}", place(to))),
             Canon::Feed { to, .. } => moves.push(format!("F{}", place(to))),
             Canon::Arc { to, centre, .. } => {
@@ -287,7 +287,7 @@ fn the_tools_origins_and_dynamics_of_siemens_own_language_are_read() {
         b"T3 M6\nT=\"B\" M6\nM30",
         &mut DeviceMemory::new().lend(),
         &mut |event| {
-            if let Canon::ChangeTool(tool) = event.canon {
+            if let Canon::ChangeTool(tool) = *event.canon {
                 tools.push((tool, event.modal.tool));
             }
             Ok(())
@@ -301,7 +301,7 @@ fn the_second_tool_beside_m6_is_the_next_one() {
     let mut tools = Vec::new();
     let run =
         interpret(options(Dialect::Fanuc), b"T07 T11 M06\nM6\nM30", &mut DeviceMemory::new().lend(), &mut |event| {
-            if let Canon::ChangeTool(tool) = event.canon {
+            if let Canon::ChangeTool(tool) = *event.canon {
                 tools.push(tool);
             }
             Ok(())

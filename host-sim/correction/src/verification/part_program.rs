@@ -41,7 +41,7 @@ impl PartProgram {
                     let [x, y, z, ..] = event.modal.shifts.local;
                     local = [x, y, z];
                 }
-                if let Canon::Traverse { to, .. } | Canon::Feed { to, .. } = event.canon {
+                if let Canon::Traverse { to, .. } | Canon::Feed { to, .. } = *event.canon {
                     highest_nm = highest_nm.max(to.z.map(|z| z.nm()));
                 }
                 Ok(())

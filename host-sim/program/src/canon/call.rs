@@ -7,7 +7,7 @@ use truepath_core::gcode::{
     Units,
 };
 use truepath_core::geometry::Side;
-use truepath_core::units::Real;
+use truepath_core::units::{Position, Real};
 
 use super::lines::Lines;
 use super::options::CanonOptions;
@@ -67,9 +67,9 @@ impl<'a, W: Write> Calls<'a, W> {
 
     /// Moves to a place; an axis that is not known stays.
     pub(super) fn go(&mut self, to: Axes) {
-        for (at, to) in self.at.iter_mut().zip([to.x, to.y, to.z]) {
-            *at = to.map_or(*at, |p| p.nm());
-        }
+        let stays = |at: i64, to: Option<Position>| to.map_or(at, Position::nm);
+        let [x, y, z] = self.at;
+        self.at = [stays(x, to.x), stays(y, to.y), stays(z, to.z)];
     }
 
     /// Prints one step. `event` is there for those that come as they are executed.

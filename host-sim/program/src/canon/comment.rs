@@ -20,13 +20,16 @@ impl Remark {
         if comment.kind == CommentKind::Debug && parameters.memory().given(5599) == Some(0.0) {
             return None;
         }
-        let mut text = String::new();
-        // Writing to memory does not fail.
-        let _ = comment.write(parameters, &mut text);
+        let text = || {
+            let mut text = String::new();
+            // Writing to memory does not fail.
+            let _ = comment.write(parameters, &mut text);
+            text
+        };
         Some(match comment.kind {
-            CommentKind::Message | CommentKind::Debug => Self::Call("MESSAGE", text),
-            CommentKind::Log => Self::Call("LOG", text),
-            CommentKind::Print => Self::Bare(text),
+            CommentKind::Message | CommentKind::Debug => Self::Call("MESSAGE", text()),
+            CommentKind::Log => Self::Call("LOG", text()),
+            CommentKind::Print => Self::Bare(text()),
             _ => Self::Call("COMMENT", String::from_utf8_lossy(body).trim_start().to_owned()),
         })
     }

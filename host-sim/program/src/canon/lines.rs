@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::number::{push_ratio, push_real, push_right, push_separated, push_whole};
+use super::number::{Count, Short, push_ratio, push_real, push_separated, push_whole, short_ratio};
 
 /// Bytes gathered before they are written.
 const PIECE: usize = 1 << 16;
@@ -14,20 +14,32 @@ const NO_LABEL: &[u8; 7] = b"N..... ";
 pub(super) struct Lines<W> {
     out: W,
     text: Vec<u8>,
-    /// The running number of the last line.
-    number: u64,
+    /// Of the last line.
+    count: Count,
     /// `N10   ` or `N..... `.
     label: Vec<u8>,
     /// Whether it names a block.
     labelled: bool,
+    /// The last place of each axis.
+    places: [Place; 3],
     /// What the writer answered when it failed; nothing is written after that.
     failed: Option<io::Error>,
+}
+
+/// Where an axis stands: it often stays there for many lines.
+#[derive(Clone, Copy, Default)]
+struct Place {
+    value: i64,
+    unit: i64,
+    /// `None` when it is too long, or not written yet.
+    text: Option<Short>,
 }
 
 impl<W: Write> Lines<W> {
     pub(super) fn new(out: W) -> Self {
         let text = Vec::with_capacity(PIECE * 2);
-        Self { out, text, number: 0, label: NO_LABEL.to_vec(), labelled: false, failed: None }
+        let places = [Place::default(); 3];
+        Self { out, text, count: Count::new(), label: NO_LABEL.to_vec(), labelled: false, places, failed: None }
     }
 
     /// The N word of the block the next lines belong to, its digits before the point.
@@ -67,8 +79,7 @@ impl<W: Write> Lines<W> {
     /// The number and the label.
     #[inline]
     fn begin(&mut self) {
-        self.number += 1;
-        push_right(&mut self.text, self.number);
+        self.count.push_next(&mut self.text);
         match self.label.first_chunk::<7>() {
             Some(label) if self.label.len() == 7 => self.text.extend_from_slice(label),
             _ => self.text.extend_from_slice(&self.label),
@@ -121,6 +132,19 @@ impl<W: Write> Lines<W> {
     pub(super) fn push_lengths<const N: usize>(&mut self, values: [i64; N], unit: i64) {
         for value in values {
             push_separated(&mut self.text, value, unit);
+        }
+    }
+
+    /// The place of an axis, with the separator behind it.
+    #[inline]
+    pub(super) fn push_place(&mut self, axis: usize, value: i64, unit: i64) {
+        let place = &mut self.places[axis];
+        if (place.value, place.unit) != (value, unit) {
+            *place = Place { value, unit, text: short_ratio(value, unit) };
+        }
+        match place.text {
+            Some(text) => text.push(&mut self.text),
+            None => push_separated(&mut self.text, value, unit),
         }
     }
 

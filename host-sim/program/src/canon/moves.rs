@@ -82,7 +82,10 @@ impl<W: Write> Calls<'_, W> {
     fn straight<const N: usize>(&mut self, name: &[u8; N], modal: &Modal) {
         let [a, b, c, ..] = modal.auxiliary;
         self.lines.open_move(name);
-        self.lines.push_lengths(self.at, modal.units.nanometres());
+        let unit = modal.units.nanometres();
+        for (axis, at) in self.at.into_iter().enumerate() {
+            self.lines.push_place(axis, at, unit);
+        }
         self.lines.close_turned([a, b, c], MILLION);
     }
 
@@ -103,13 +106,15 @@ impl<W: Write> Calls<'_, W> {
         self.go(arc.to);
         let unit = modal.units.nanometres();
         let [a, b, c, ..] = modal.auxiliary;
-        let at = self.at;
         self.lines.open_move(b"ARC_FEED(");
-        self.lines.push_lengths([at[first], at[second], arc.centre.x.nm(), arc.centre.y.nm()], unit);
+        for axis in [first, second] {
+            self.lines.push_place(axis, self.at[axis], unit);
+        }
+        self.lines.push_lengths([arc.centre.x.nm(), arc.centre.y.nm()], unit);
         self.lines.push(if arc.counter_clockwise { "" } else { "-" });
         self.lines.push_whole(turns.unsigned_abs());
         self.lines.push(", ");
-        self.lines.push_lengths([at[third]], unit);
+        self.lines.push_place(third, self.at[third], unit);
         self.lines.close_turned([a, b, c], MILLION);
     }
 

@@ -11,6 +11,22 @@ const SEPARATOR: &[u8; 2] = b", ";
 /// The first number of more than eight digits.
 const NINE_DIGITS: u64 = 100_000_000;
 
+/// A text of at most sixteen bytes, the first of them lowest.
+#[derive(Clone, Copy)]
+pub(super) struct Short {
+    bytes: u128,
+    length: usize,
+}
+
+impl Short {
+    #[inline]
+    pub(super) fn push(self, out: &mut Vec<u8>) {
+        let end = out.len() + self.length;
+        out.extend_from_slice(&self.bytes.to_le_bytes());
+        out.truncate(end);
+    }
+}
+
 /// Appends `value / unit` with four decimals; `unit` is positive: 1 000 000 for millimetres and degrees, 25 400 000
 /// for inches.
 pub(super) fn push_ratio(out: &mut Vec<u8>, value: i64, unit: i64) {
@@ -19,35 +35,54 @@ pub(super) fn push_ratio(out: &mut Vec<u8>, value: i64, unit: i64) {
 }
 
 /// The same with a comma and a blank behind it.
-#[inline]
 pub(super) fn push_separated(out: &mut Vec<u8>, value: i64, unit: i64) {
-    // An axis that does not move, and those that turn nearly always.
-    if value == 0 {
-        return out.extend_from_slice(b"0.0000, ");
+    match short_ratio(value, unit) {
+        Some(text) => text.push(out),
+        None => push_long_ratio(out, value, unit),
     }
-    // Both units are multiples of 10 000. Division by a constant is a product.
-    let magnitude = value.unsigned_abs();
-    let (mut digits, rest, last) = match unit {
-        1_000_000 => (magnitude / 100, magnitude % 100, 100),
-        _ => {
-            let last = (unit / 10_000).unsigned_abs().max(1);
-            (magnitude / last, magnitude % last, last)
-        }
+}
+
+/// The same as a short text; `None` for nine digits and more, and where rounding is that of the double.
+#[inline]
+pub(super) fn short_ratio(value: i64, unit: i64) -> Option<Short> {
+    let digits = ten_thousandths(value, unit).filter(|&digits| digits < NINE_DIGITS)?;
+    Some(few_digits(value < 0 && digits != 0, digits))
+}
+
+/// The magnitude in ten-thousandths of the unit; `None` halfway between two.
+#[inline]
+fn ten_thousandths(value: i64, unit: i64) -> Option<u64> {
+    // Division by a constant is a product.
+    let (digits, twice_rest, divisor) = match unit {
+        1_000_000 => divided::<100>(value),
+        25_400_000 => divided::<2_540>(value),
+        _ => return None,
     };
-    if rest * 2 == last {
-        push_real(out, value as f64 / unit as f64);
-        return out.extend_from_slice(SEPARATOR);
+    if twice_rest == divisor { None } else { Some(digits + u64::from(twice_rest > divisor)) }
+}
+
+#[inline]
+fn divided<const BY: u64>(value: i64) -> (u64, u64, u64) {
+    let magnitude = value.unsigned_abs();
+    (magnitude / BY, magnitude % BY * 2, BY)
+}
+
+#[cold]
+fn push_long_ratio(out: &mut Vec<u8>, value: i64, unit: i64) {
+    match ten_thousandths(value, unit) {
+        Some(digits) => push_digits(out, value < 0, digits),
+        None => {
+            push_real(out, value as f64 / unit as f64);
+            out.extend_from_slice(SEPARATOR);
+        }
     }
-    digits += u64::from(rest * 2 > last);
-    let minus = value < 0 && digits != 0;
-    if digits < NINE_DIGITS { push_few_digits(out, minus, digits) } else { push_digits(out, minus, digits) }
 }
 
 /// Appends a double with four decimals.
 pub(super) fn push_real(out: &mut Vec<u8>, value: f64) {
     // Feeds and speeds are mostly whole.
     if (1.0..10_000.0).contains(&value) && value.fract() == 0.0 {
-        push_few_digits(out, false, value as u64 * 10_000);
+        few_digits(false, value as u64 * 10_000).push(out);
         return out.truncate(out.len() - SEPARATOR.len());
     }
     let start = out.len();
@@ -59,7 +94,6 @@ pub(super) fn push_real(out: &mut Vec<u8>, value: f64) {
 }
 
 /// Appends ten-thousandths as a decimal number, and the separator.
-#[cold]
 fn push_digits(out: &mut Vec<u8>, minus: bool, ten_thousandths: u64) {
     if minus {
         out.push(b'-');
@@ -75,23 +109,15 @@ fn push_digits(out: &mut Vec<u8>, minus: bool, ten_thousandths: u64) {
 
 /// The same of at most eight digits: as one number of 16 bytes, from which the zeros in front are shifted out.
 #[inline]
-fn push_few_digits(out: &mut Vec<u8>, minus: bool, ten_thousandths: u64) {
+fn few_digits(minus: bool, ten_thousandths: u64) -> Short {
     let digits = eight_digits(ten_thousandths);
     // The last digit before the point stays.
     let zeros = zeros_in_front(digits).min(3);
     let (whole, part) = (digits & 0xFFFF_FFFF, digits >> 32);
     let text = u128::from(whole) | (u128::from(b'.') << 32) | (u128::from(part) << 40);
     let text = (text | (u128::from(u16::from_le_bytes(*SEPARATOR)) << 72)) >> (8 * zeros);
-    let text = if minus { (text << 8) | u128::from(b'-') } else { text };
-    push_front(out, text, 9 + SEPARATOR.len() - zeros as usize + usize::from(minus));
-}
-
-/// Appends the first bytes of sixteen.
-#[inline]
-fn push_front(out: &mut Vec<u8>, text: u128, length: usize) {
-    let end = out.len() + length;
-    out.extend_from_slice(&text.to_le_bytes());
-    out.truncate(end);
+    let bytes = if minus { (text << 8) | u128::from(b'-') } else { text };
+    Short { bytes, length: 9 + SEPARATOR.len() - zeros as usize + usize::from(minus) }
 }
 
 /// The digits of a number below 10⁸, the first in the lowest byte: two halves, four quarters, eight digits at once.
@@ -110,19 +136,50 @@ const fn zeros_in_front(digits: u64) -> u32 {
     ((digits ^ 0x3030_3030_3030_3030) | (1 << 56)).trailing_zeros() / 8
 }
 
-/// Appends a whole number in at least five places, with blanks before it and one behind it.
-#[inline]
-pub(super) fn push_right(out: &mut Vec<u8>, number: u64) {
-    if number >= NINE_DIGITS {
-        push_whole(out, number);
-        return out.push(b' ');
+/// The running number of lines, counted up in its text: in at least five places, with blanks before it and one behind it.
+pub(super) struct Count {
+    number: u64,
+    /// `None` from nine digits on.
+    text: Option<Short>,
+    /// What changes the last digit by one.
+    one: u128,
+}
+
+impl Count {
+    /// Before the first line.
+    pub(super) fn new() -> Self {
+        let mut count = Self { number: 0, text: None, one: 0 };
+        count.write();
+        count
     }
-    let digits = eight_digits(number);
-    let zeros = zeros_in_front(digits);
-    let blanks = 0x1010_1010_1010_1010 & ((1 << (8 * zeros)) - 1);
-    let text = u128::from(digits ^ blanks) | (u128::from(b' ') << 64);
-    let left_out = zeros.min(3);
-    push_front(out, text >> (8 * left_out), 9 - left_out as usize);
+
+    #[inline]
+    pub(super) fn push_next(&mut self, out: &mut Vec<u8>) {
+        self.number += 1;
+        match &mut self.text {
+            Some(text) if !self.number.is_multiple_of(10) => text.bytes += self.one,
+            _ => self.write(),
+        }
+        match self.text {
+            Some(text) => text.push(out),
+            None => {
+                push_whole(out, self.number);
+                out.push(b' ');
+            }
+        }
+    }
+
+    fn write(&mut self) {
+        self.text = (self.number < NINE_DIGITS).then(|| {
+            let digits = eight_digits(self.number);
+            let zeros = zeros_in_front(digits);
+            let blanks = 0x1010_1010_1010_1010 & ((1 << (8 * zeros)) - 1);
+            let text = u128::from(digits ^ blanks) | (u128::from(b' ') << 64);
+            let left_out = zeros.min(3);
+            self.one = 1 << (8 * (7 - left_out));
+            Short { bytes: text >> (8 * left_out), length: 9 - left_out as usize }
+        });
+    }
 }
 
 /// Appends a whole number.
@@ -153,10 +210,13 @@ mod tests {
 
     #[test]
     fn whole_numbers_stand_right_in_five_places() {
-        for number in [0, 7, 10, 99, 9_999, 10_000, 123_456, 99_999_999, 100_000_000, 12_345_678_901] {
+        for number in [0, 7, 95, 9_985, 99_999, 123_456, 99_999_985, 12_345_678_901] {
             let mut out = Vec::new();
-            push_right(&mut out, number);
-            assert_eq!(String::from_utf8(out).unwrap(), format!("{number:5} "));
+            let mut count = Count { number, ..Count::new() };
+            count.write();
+            (1..=20).for_each(|_| count.push_next(&mut out));
+            let expected: String = (1..=20).map(|next| format!("{:5} ", number + next)).collect();
+            assert_eq!(String::from_utf8(out).unwrap(), expected);
         }
     }
 

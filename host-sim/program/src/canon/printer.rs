@@ -92,7 +92,7 @@ impl<'a, W: Write> Printer<'a, W> {
             self.cancels = still && (self.moving || has_g(event.text, source, &[800]));
             self.moving = !still;
         }
-        match &event.canon {
+        match event.canon {
             Canon::Comment(body) => self.comment(event, *body),
             Canon::ProgramNumber(_) => self.named = true,
             canon @ (Canon::Feed { .. } | Canon::Traverse { .. }) => {
@@ -178,11 +178,15 @@ impl<'a, W: Write> Printer<'a, W> {
         self.tell_cancel();
     }
 
+    #[inline]
     fn tell_distance(&mut self, modal: &Modal) {
         let now = (modal.absolute, modal.absolute_centres, modal.retract);
-        if now == self.told {
-            return;
+        if now != self.told {
+            self.tell_new_distance(now);
         }
+    }
+
+    fn tell_new_distance(&mut self, now: (bool, bool, RetractLevel)) {
         let name = |absolute: bool| if absolute { "absolute" } else { "incremental" };
         if now.0 != self.told.0 {
             self.calls.lines.remark(&format!("distance mode changed to {}", name(now.0)));

@@ -255,7 +255,7 @@ fn each(text: &Text<'_>, options: Options<'static>, mut step: impl FnMut(u32, Ca
     let mut memory = Box::new(HostMemory::new());
     let mut sink = |event: &Event<'_>| {
         if event.source.file == 0 {
-            step(event.source.line, event.canon);
+            step(event.source.line, *event.canon);
         }
         Ok(())
     };

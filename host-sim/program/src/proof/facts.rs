@@ -73,7 +73,7 @@ pub(super) fn facts(program: &[u8], options: Options, centre_path: bool) -> Resu
     let mut facts = Vec::new();
     let mut memory = Box::new(HostMemory::new());
     let mut sink = |event: &Event<'_>| {
-        let what = match event.canon {
+        let what = match *event.canon {
             // `;` at the end of a line says nothing.
             Canon::Comment(span) if span.len == 0 => return Ok(()),
             // A rounding that has become part of the path stands as a comment.

@@ -214,7 +214,7 @@ fn an_incremental_program_returns_to_its_own_places_after_the_contour() {
         let mut at = None;
         truepath_core::gcode::Interpreter::new(Default::default())
             .run(program.as_bytes(), &mut HostMemory::new().lend(), &mut |event| {
-                if let truepath_core::gcode::Canon::Traverse { to, .. } = event.canon {
+                if let truepath_core::gcode::Canon::Traverse { to, .. } = *event.canon {
                     at = to.point();
                 }
                 Ok(())
@@ -285,7 +285,7 @@ fn start(program: &str) -> Point {
     let mut at = None;
     truepath_core::gcode::Interpreter::new(Default::default())
         .run(program.as_bytes(), &mut HostMemory::new().lend(), &mut |event| {
-            if let truepath_core::gcode::Canon::Traverse { to, .. } = event.canon {
+            if let truepath_core::gcode::Canon::Traverse { to, .. } = *event.canon {
                 at = at.or(to.point());
             }
             Ok(())

@@ -143,7 +143,7 @@ fn edits(blocks: &[Block], wave: [f64; 4]) -> Vec<BlockEdit> {
 fn last_place(program: &[u8]) -> Point {
     let mut at = None;
     let read = Interpreter::new(Default::default()).run(program, &mut HostMemory::new().lend(), &mut |event| {
-        if let Canon::Traverse { to, .. } = event.canon {
+        if let Canon::Traverse { to, .. } = *event.canon {
             at = to.point();
         }
         Ok(())

@@ -240,7 +240,8 @@ impl<'p> Execution<'p, '_, '_> {
     /// The radius by which RL and RR move the path aside; `None` where the program is the path of the centre.
     fn radius_of_cutter(&mut self, span: Span) -> Result<Option<Offset>, GcodeError> {
         let sentence = Sentence::new(self.text);
-        let mut block = BlockWords::gather(&sentence, self.options.dialect)?;
+        let mut block = BlockWords::of(&sentence.words);
+        block.gather(&sentence, self.options.dialect)?;
         let diameter = self.diameter_of_table(&mut block, span)?;
         let half = |d: Offset| Offset::from_nm(i64::try_from(div_rounded(d.nm().into(), 2)).unwrap_or(i64::MAX));
         Ok(diameter.map(half))

@@ -113,7 +113,8 @@ impl<'p> Execution<'p, '_, '_> {
         for word in words {
             lowered.push(*word).map_err(|kind| self.error(kind, word.span))?;
         }
-        let mut block = BlockWords::gather(&lowered, self.options.dialect)?;
+        let mut block = BlockWords::of(&lowered.words);
+        block.gather(&lowered, self.options.dialect)?;
         self.execute(&mut block)
     }
 

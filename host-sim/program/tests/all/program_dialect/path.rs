@@ -81,7 +81,7 @@ pub fn plunges(program: &str) -> Vec<Point> {
     let mut places = Vec::new();
     Interpreter::new(Options::default())
         .run(program.as_bytes(), &mut HostMemory::new().lend(), &mut |event| {
-            if let Canon::Feed { from, to } = event.canon
+            if let Canon::Feed { from, to } = *event.canon
                 && from.point() == to.point()
                 && from.z > to.z
             {
@@ -98,7 +98,7 @@ pub fn end(program: &str) -> Axes {
     let mut at = Axes::UNKNOWN;
     Interpreter::new(Options::default())
         .run(program.as_bytes(), &mut HostMemory::new().lend(), &mut |event| {
-            if let Canon::Feed { to, .. } | Canon::Traverse { to, .. } | Canon::Arc { to, .. } = event.canon {
+            if let Canon::Feed { to, .. } | Canon::Traverse { to, .. } | Canon::Arc { to, .. } = *event.canon {
                 at = to;
             }
             Ok(())

@@ -181,7 +181,7 @@ impl Writer {
         if event.modal.motion.is_some_and(tapping) {
             return Err(Refused("a tapping cycle"));
         }
-        let line = match event.canon {
+        let line = match *event.canon {
             Canon::ProgramNumber(_) => return Ok(()),
             Canon::Comment(span) => {
                 let body = String::from_utf8_lossy(span.of(event.text)).replace(['(', ')', '\r', '\n'], " ");
