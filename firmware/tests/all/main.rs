@@ -5,6 +5,7 @@ mod config_interrupted;
 mod flash_rules;
 #[path = "../../../core/tests/all/job_support/mod.rs"]
 mod job_support;
+mod ledger_pages;
 mod ledger_records;
 mod ledger_series;
 mod stm32h743;

@@ -221,3 +221,26 @@ fn program_job_and_probe_log_go_to_memory_and_are_lost_at_a_reset() {
     rig.reset(ResetCause::PowerOn);
     assert_eq!(rig.ask(Ask::Compute), Err(Denial::Missing(Item::Program)));
 }
+
+#[test]
+fn of_a_slot_that_is_not_there_nothing_is_put_in_use() {
+    let mut rig = Rig::new();
+    let image = image_of(straight(0));
+    let slot = rig.upload(&image).unwrap();
+    rig.activate(slot, name(&image)).unwrap();
+    assert_eq!(rig.upload(&image_of(straight(1))).unwrap(), 1 - slot);
+    for slot in [2, 3, u8::MAX] {
+        for crc in [name(&image), name(&image_of(straight(1)))] {
+            assert_eq!(rig.activate(slot, crc), Err(Denial::NoImage { slot }));
+        }
+    }
+}
+
+#[test]
+fn a_slot_is_listed_as_begun_while_an_upload_is_under_way() {
+    let mut rig = Rig::new();
+    let image = image_of(straight(0));
+    assert_eq!(rig.begin(&image), Ok(0));
+    let begun = Slot::Partial { length: image.len() as u32, crc: name(&image), written: 0 };
+    assert_eq!(rig.slots(), [begun, Slot::Empty]);
+}

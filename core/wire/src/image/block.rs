@@ -187,3 +187,62 @@ pub(super) fn format(found: u16) -> Result<bool, ImageError> {
         _ => Err(ImageError::Format { found, expected: FORMAT }),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::indexing_slicing)]
+    use super::*;
+
+    #[test]
+    fn the_classes_of_a_list_are_those_in_it_however_often() {
+        use DeviceClass::{Bench, Board, LinuxCnc};
+        assert_eq!(DeviceClasses::of(&[]), None);
+        assert_eq!(DeviceClasses::of(&DeviceClass::ALL), Some(DeviceClasses::ALL));
+        for class in DeviceClass::ALL {
+            let classes = DeviceClasses::of(&[class, class]).unwrap();
+            assert!(DeviceClass::ALL.into_iter().all(|other| classes.holds(other) == (other == class)));
+        }
+        assert_eq!([Board, LinuxCnc, Bench].map(DeviceClass::name), ["board", "linuxcnc", "bench"]);
+    }
+
+    #[test]
+    fn the_same_pass_is_that_of_the_same_feature_of_the_same_program() {
+        let of = Counted { program_crc: 1, feature: 2, pass: 3, counter: 4 };
+        assert!(of.is_same_pass(&Counted { counter: 5, ..of }));
+        for other in [
+            Counted { program_crc: 9, ..of },
+            Counted { feature: 9, ..of },
+            Counted { pass: 9, ..of },
+            Counted { program_crc: 9, feature: 9, ..of },
+            Counted { feature: 9, pass: 9, ..of },
+            Counted { program_crc: 9, feature: 9, pass: 9, ..of },
+            Counted::firmware(4),
+        ] {
+            assert!(!of.is_same_pass(&other), "{other:?}");
+        }
+        assert!(Counted::firmware(4).is_same_pass(&Counted::firmware(5)));
+        let binding = Binding { program_crc: 1, feature: 2, pass: 3, tool: 9, tool_offset: 9, setup: 9 };
+        assert_eq!(Counted::of(&binding, 4), of);
+    }
+
+    #[test]
+    fn what_is_shorter_than_the_head_or_of_another_format_is_not_signed() {
+        let mut bytes = [0; HEADER_BYTES + SIGNATURE_BYTES + CRC_BYTES];
+        for (length, format) in [
+            (bytes.len(), SIGNED_FORMAT),
+            (bytes.len(), FORMAT),
+            (HEADER_BYTES + CRC_BYTES - 1, SIGNED_FORMAT),
+            (120, FORMAT),
+        ] {
+            bytes.fill(0);
+            bytes[8..10].copy_from_slice(&format.to_le_bytes());
+            let block = length - CRC_BYTES - SIGNATURE_BYTES;
+            bytes[block..block + 5].copy_from_slice(&[b'T', b'P', b'S', b'G', 1]);
+            assert_eq!(
+                Signed::of(&bytes[..length]).is_some(),
+                length == bytes.len() && format == SIGNED_FORMAT,
+                "{length}"
+            );
+        }
+    }
+}

@@ -57,5 +57,8 @@ mod tests {
         assert_eq!(FineOffset::checked_from_offset(Offset::from_nm(-300_000)), Some(a));
         assert_eq!(FineOffset::checked_from_offset(Offset::from_nm(8_388_608)), None);
         assert_eq!(FineOffset::checked_from_mm(Real::from_int(-9)), None);
+        assert_eq!(a.mm(), Real::ratio(-3, 10));
+        let greatest = FineOffset::from_bits(i32::MAX);
+        assert_eq!(FineOffset::checked_from_mm(greatest.mm()), Some(greatest));
     }
 }

@@ -1,6 +1,8 @@
 //! Image, link and rewriting as their documents have them, and the table of the safety contract.
 
 mod document;
+mod image_keys;
+mod image_ranges;
 mod image_signature;
 mod link_chaos;
 mod link_document;

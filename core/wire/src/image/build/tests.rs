@@ -66,7 +66,7 @@ fn an_image_gives_back_what_was_put_in() {
     let buffer = bytes(50);
     let image = Image::new_checked(&buffer).unwrap();
     assert_eq!(*image.settings(), settings());
-    assert_eq!(image.len(), 50);
+    assert_eq!((image.len(), image.is_empty()), (50, false));
     for (node, given) in image.nodes().zip(&given) {
         let origin = image.header().origin;
         let point = Point::from_nm(origin.x.nm() + i64::from(node.x), origin.y.nm() + i64::from(node.y));
