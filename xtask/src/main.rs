@@ -197,9 +197,9 @@ enum Task {
     Mutants {
         /// Only folders whose names hold this text, for instance rewrite or ledger.
         folder: Option<String>,
-        /// Only one part of so many, for instance 0/8.
-        #[arg(long, value_name = "K/N")]
-        shard: Option<String>,
+        /// Only what one build holds with all its mutants, in minutes; the others take a build each.
+        #[arg(long)]
+        quick: bool,
     },
     /// The report page: its build as committed, and pages that the program wrote in a real browser.
     Page {
@@ -294,8 +294,8 @@ fn main() -> ExitCode {
             let length = runs.map_or(fuzz::Length::Seconds(seconds), fuzz::Length::Runs);
             report.run(Step::new("fuzz", || fuzz::check(target.as_deref(), length)));
         }
-        Task::Mutants { folder, shard } => {
-            report.run(Step::new("mutants", || mutants::check(folder.as_deref(), shard.as_deref())));
+        Task::Mutants { folder, quick } => {
+            report.run(Step::new("mutants", || mutants::check(folder.as_deref(), quick)));
         }
         Task::Page { write } => report.run(Step::new("page", || page::check(write))),
         Task::Web { no_tests, fast } => {
