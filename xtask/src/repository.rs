@@ -102,6 +102,15 @@ pub fn stand_back() {
     }
 }
 
+/// The lines of a file.
+///
+/// # Errors
+/// What the system says.
+pub fn lines(file: &Path) -> Result<Vec<String>, Failure> {
+    let text = std::fs::read_to_string(file).map_err(|e| Failure::found(format!("{}: {e}", file.display())))?;
+    Ok(text.lines().map(str::to_owned).collect())
+}
+
 /// Makes a folder, with those above it.
 ///
 /// # Errors

@@ -12,9 +12,8 @@ mod trial;
 mod weave;
 
 use std::collections::BTreeSet;
-use std::path::Path;
 
-use crate::repository::{cargo, root, succeeds};
+use crate::repository::{cargo, lines, root, succeeds};
 use crate::step::{Failure, Outcome, Passed};
 use mutant::{End, Mutant, list};
 use trial::Trial;
@@ -85,11 +84,6 @@ fn figures(ends: &[Option<End>]) -> String {
 
 fn row_of(cells: [impl std::fmt::Display; 6]) -> String {
     cells.map(|cell| format!("{cell:>11}")).concat()
-}
-
-fn lines(file: &Path) -> Result<Vec<String>, Failure> {
-    let text = std::fs::read_to_string(file).map_err(|e| Failure::found(format!("{}: {e}", file.display())))?;
-    Ok(text.lines().map(str::to_owned).collect())
 }
 
 /// The mutants of the document, by file and change.

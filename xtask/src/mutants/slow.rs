@@ -1,9 +1,8 @@
 //! What one build does not hold: cargo-mutants judges it itself, with a build for each. Begun anew it goes on where it was, but for what
 //! survived, as the tests may have become better. Mutants of fields it runs whatever names it is given.
 
-use super::lines;
 use super::mutant::{End, Mutant};
-use crate::repository::{cargo, make_folder, target};
+use crate::repository::{cargo, lines, make_folder, target};
 use crate::step::Failure;
 
 /// Has the mutants judged that have not ended.
