@@ -182,7 +182,7 @@ enum Task {
     },
     /// Random bytes, guided by coverage, into everything that reads a file.
     Fuzz {
-        /// Only this target: program, probe, job, five_axis, image or servo.
+        /// Only this target: program, probe, job, five_axis, image, servo or device.
         #[arg(long)]
         target: Option<String>,
         /// Inputs for each target, instead of a time.
