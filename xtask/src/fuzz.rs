@@ -16,6 +16,10 @@ use crate::toolchain::need;
 struct Target {
     name: &'static str,
     seeds: &'static [(&'static str, &'static [&'static str])],
+    /// What an input begins with that its files do not have: the byte by which the target chooses a format.
+    choices: u8,
+    /// Whether there is a dictionary of the words that its text is made of.
+    words: bool,
     /// Longest input, bytes.
     longest: u32,
 }
@@ -30,22 +34,34 @@ const TARGETS: [Target; 7] = [
             ("host-sim/program/tests", &["nc", "ngc"]),
             ("tests/data", &["nc", "ngc"]),
         ],
+        choices: 2,
+        words: true,
         longest: 2_000,
     },
     Target {
         name: "probe",
         seeds: &[("core/tests/data", &["txt", "csv", "log"]), ("host-sim/job/tests/data", &["txt", "csv", "log"])],
+        choices: 6,
+        words: true,
         longest: 2_000,
     },
-    Target { name: "job", seeds: &[("host-sim/demo", &["toml"]), ("host-sim/job/tests", &["toml"])], longest: 3_000 },
+    Target {
+        name: "job",
+        seeds: &[("host-sim/demo", &["toml"]), ("host-sim/job/tests", &["toml"])],
+        choices: 0,
+        words: true,
+        longest: 3_000,
+    },
     Target {
         name: "five_axis",
         seeds: &[("examples/multiaxis", &["nc", "toml"]), ("fuzz/seeds/five_axis", &["nc"])],
+        choices: 0,
+        words: true,
         longest: 2_000,
     },
-    Target { name: "image", seeds: &[("fuzz/seeds/image", &["tpi"])], longest: 1_000 },
-    Target { name: "servo", seeds: &[("fuzz/seeds/servo", &["bin"])], longest: 16_000 },
-    Target { name: "device", seeds: &[("fuzz/seeds/device", &["bin"])], longest: 2_000 },
+    Target { name: "image", seeds: &[("fuzz/seeds/image", &["tpi"])], choices: 0, words: false, longest: 1_000 },
+    Target { name: "servo", seeds: &[("fuzz/seeds/servo", &["bin"])], choices: 0, words: false, longest: 16_000 },
+    Target { name: "device", seeds: &[("fuzz/seeds/device", &["bin"])], choices: 0, words: false, longest: 2_000 },
 ];
 
 /// Counters for every edge and comparison.
@@ -65,8 +81,8 @@ pub enum Length {
     Seconds(u64),
 }
 
-/// Fuzzes one target, or all of them one after the other.
-pub fn check(only: Option<&str>, length: Length) -> Outcome {
+/// Fuzzes one target, or all of them one after the other; inputs of up to `longest` bytes, or what a target has for itself.
+pub fn check(only: Option<&str>, length: Length, longest: Option<u32>) -> Outcome {
     let chosen: Vec<&Target> = TARGETS.iter().filter(|t| only.is_none_or(|name| name == t.name)).collect();
     if chosen.is_empty() {
         let names: Vec<&str> = TARGETS.iter().map(|t| t.name).collect();
@@ -74,7 +90,7 @@ pub fn check(only: Option<&str>, length: Length) -> Outcome {
     }
     let binaries = build()?;
     for target in chosen {
-        fuzz(target, &binaries, length)?;
+        fuzz(target, &binaries, length, longest)?;
     }
     Ok(Passed::Done)
 }
@@ -99,7 +115,7 @@ fn cpp_compiler() -> Result<(), Failure> {
     need(|| succeeds(program("c++").arg("--version")), "g++", "fuzzing needs a C++ compiler")
 }
 
-fn fuzz(target: &Target, binaries: &Path, length: Length) -> Result<(), Failure> {
+fn fuzz(target: &Target, binaries: &Path, length: Length, longest: Option<u32>) -> Result<(), Failure> {
     let place = binaries.ancestors().nth(2).unwrap_or(binaries);
     let (corpus, artifacts) = (place.join("corpus").join(target.name), place.join("artifacts").join(target.name));
     for folder in [&corpus, &artifacts] {
@@ -110,12 +126,18 @@ fn fuzz(target: &Target, binaries: &Path, length: Length) -> Result<(), Failure>
         return Err(Failure::found(format!("no seeds for {}: the folders have moved", target.name)));
     }
     for (k, seed) in seeds.iter().enumerate() {
-        let copied = std::fs::copy(seed, corpus.join(format!("seed-{k}")));
-        copied.map_err(|e| Failure::found(format!("{}: {e}", seed.display())))?;
+        let sown = std::fs::read(seed).and_then(|bytes| {
+            let mut inputs = inputs(&bytes, target.choices).into_iter().enumerate();
+            inputs.try_for_each(|(n, input)| std::fs::write(corpus.join(format!("seed-{k}-{n}")), input))
+        });
+        sown.map_err(|e| Failure::found(format!("{}: {e}", seed.display())))?;
     }
     let mut command = program(binaries.join(target.name));
-    command.arg(format!("-max_len={}", target.longest)).arg(format!("-timeout={HANG}"));
+    command.arg(format!("-max_len={}", longest.unwrap_or(target.longest))).arg(format!("-timeout={HANG}"));
     command.arg(format!("-artifact_prefix={}/", artifacts.display())).arg("-print_final_stats=1");
+    if target.words {
+        command.arg(format!("-dict={}", dictionary(target).display()));
+    }
     command.arg(match length {
         Length::Runs(runs) => format!("-runs={runs}"),
         Length::Seconds(seconds) => format!("-max_total_time={seconds}"),
@@ -135,6 +157,21 @@ fn fuzz(target: &Target, binaries: &Path, length: Length) -> Result<(), Failure>
         _ => return Err(Failure::found(format!("{}: {}\n{}", target.name, log.display(), end(&said)))),
     }
     Ok(())
+}
+
+/// What a file is as inputs: itself, or itself behind each choice.
+fn inputs(bytes: &[u8], choices: u8) -> Vec<Vec<u8>> {
+    match choices {
+        0 => vec![bytes.to_vec()],
+        choices => (0..choices).map(|choice| [&[choice], bytes].concat()).collect(),
+    }
+}
+
+/// The words of a target.
+fn dictionary(target: &Target) -> PathBuf {
+    // Five axes are programmed in the same words.
+    let name = if target.name == "five_axis" { "program" } else { target.name };
+    root().join("fuzz/words").join(name).with_extension("dict")
 }
 
 /// What of a target's code its inputs have reached, from what libFuzzer says.
@@ -185,7 +222,14 @@ mod tests {
         for target in &TARGETS {
             assert!(!seeds(target).is_empty(), "{}", target.name);
             assert!(root().join(format!("fuzz/targets/{}.rs", target.name)).is_file(), "{}", target.name);
+            assert!(!target.words || dictionary(target).is_file(), "{}", target.name);
         }
+    }
+
+    #[test]
+    fn a_file_is_an_input_for_every_choice() {
+        assert_eq!(inputs(b"G0", 0), [b"G0"]);
+        assert_eq!(inputs(b"G0", 2), [b"\x00G0", b"\x01G0"]);
     }
 
     #[test]

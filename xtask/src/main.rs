@@ -191,6 +191,9 @@ enum Task {
         /// Seconds for each target.
         #[arg(long, default_value_t = 20)]
         seconds: u64,
+        /// Longest input, bytes, instead of what each target has for itself: many short ones, or few long ones.
+        #[arg(long)]
+        longest: Option<u32>,
     },
     /// Mistakes put into the code of the servo and of the flash, one at a time: a test has to notice each, or docs/mutants.md says
     /// why it does not matter. Takes hours.
@@ -290,9 +293,9 @@ fn main() -> ExitCode {
         Task::Shop { folder, only, write } => {
             report.run(Step::new("shop", || shop::check(folder.as_deref(), only.as_deref(), write)));
         }
-        Task::Fuzz { target, runs, seconds } => {
+        Task::Fuzz { target, runs, seconds, longest } => {
             let length = runs.map_or(fuzz::Length::Seconds(seconds), fuzz::Length::Runs);
-            report.run(Step::new("fuzz", || fuzz::check(target.as_deref(), length)));
+            report.run(Step::new("fuzz", || fuzz::check(target.as_deref(), length, longest)));
         }
         Task::Mutants { folder, quick } => {
             report.run(Step::new("mutants", || mutants::check(folder.as_deref(), quick)));
@@ -340,7 +343,7 @@ fn test(report: &mut Report, all: bool) {
                 report.run(Step::new("conformance", || conformance::check(false)));
                 report.run(Step::new("shop", || shop::check(None, None, false)));
                 report.run(Step::new("judge", || judge::run_all(None, Profile::Dev)));
-                report.run(Step::new("fuzz", || fuzz::check(None, fuzz::Length::Seconds(15))));
+                report.run(Step::new("fuzz", || fuzz::check(None, fuzz::Length::Seconds(15), None)));
             });
         });
     });

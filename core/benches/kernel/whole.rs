@@ -100,6 +100,7 @@ impl Lent {
             updates: &mut self.updates,
             scratch: &mut self.scratch,
             residual: &[],
+            beside_sigma: &[],
             reader: InOrder,
         }
     }

@@ -107,6 +107,7 @@ pub fn image(
         updates: workspace.updates.get_mut(..count).unwrap_or_default(),
         scratch: workspace.scratch.get_mut(..count).unwrap_or_default(),
         residual: &[],
+        beside_sigma: &[],
         reader: InOrder,
     };
     let designed = designed(&pass, &path, &identified, contacts, nodes, &mut lent, &mut |permille| {

@@ -210,7 +210,7 @@ fn guarded_correction(
     let path = machine.path;
     let count = path.count();
     let mut buffers = Buffers::of(path);
-    let mut workspace = buffers.workspace(&request.beside.mean);
+    let mut workspace = buffers.workspace(&request.beside.mean, &request.beside.sigma);
     let mut nodes = vec![Node::default(); count];
     let mut unguarded = nodes.clone();
     let mut predicted = vec![Predicted::default(); count];
@@ -269,8 +269,12 @@ impl Buffers {
         }
     }
 
-    /// Lends it.
-    pub fn workspace<'a>(&'a mut self, residual: &'a [Offset]) -> DesignWorkspace<'a, &'a mut ParallelWalls> {
+    /// Lends it, with what is beside the model along the contour: expected, and its standard deviation.
+    pub fn workspace<'a>(
+        &'a mut self,
+        residual: &'a [Offset],
+        beside_sigma: &'a [Offset],
+    ) -> DesignWorkspace<'a, &'a mut ParallelWalls> {
         DesignWorkspace {
             states: &mut self.states,
             displacements: &mut self.displacements,
@@ -278,6 +282,7 @@ impl Buffers {
             updates: &mut self.updates,
             scratch: &mut self.scratch,
             residual,
+            beside_sigma,
             reader: &mut self.walls,
         }
     }

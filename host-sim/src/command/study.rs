@@ -223,7 +223,7 @@ fn words(summary: &Summary, output: &FilePath) -> String {
         }
     }
     for one in &summary.nuisances {
-        let _ = writeln!(text, "{} seeds with nuisances, touches: {}", one.set.name(), one.touches);
+        let _ = writeln!(text, "{} seeds with nuisances, touched {}", one.set.name(), one.touches.words());
         for one in &one.rows {
             text += &row(one);
         }

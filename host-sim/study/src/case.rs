@@ -71,6 +71,8 @@ pub struct Case {
     pub more_mm: Vec<f64>,
     /// Heights, shares of the depth.
     pub levels: Vec<f64>,
+    /// Ball of the probe, mm.
+    pub ball_mm: f64,
     /// The first part.
     pub first: Milled,
     /// Its wall.
@@ -115,12 +117,14 @@ impl Case {
             let source = |name: &str, text: &str| Source::new(format!("{id}/{name}"), text.as_bytes().to_vec());
             Pass::new(JobFile::parse(source("job.toml", job), FilePath::new(""))?, source("program.nc", &program))
         };
-        let trial = read(&text::job(&part, &mistakes.about(&drawn.machine, 1.0)))?;
+        let mut ball_mm = text::ball_diameter_mm(&part);
+        let trial = read(&text::job(&part, &mistakes.about(&drawn.machine, 1.0), ball_mm))?;
         let (mut first, before) = scaled(&trial, &mut drawn)?;
 
         let changed = |axis: Axis| id.cell.filter(|cell| cell.axis == axis).map(|cell| cell.value);
-        let job = text::job(&part, &mistakes.about(&drawn.machine, changed(Axis::Prior).unwrap_or(1.0)));
-        let pass = read(&job)?;
+        let believed = mistakes.about(&drawn.machine, changed(Axis::Prior).unwrap_or(1.0));
+        let mut job = text::job(&part, &believed, ball_mm);
+        let mut pass = read(&job)?;
         if let Some(noise) = changed(Axis::Noise) {
             drawn.machine.probe_noise_mm = noise * 1e-3;
             first.machine.probe_noise_mm = noise * 1e-3;
@@ -135,8 +139,15 @@ impl Case {
             (places_mm, levels) = touches(&part, trim, points as usize);
         }
         let mut more_mm = places::more(&part.contour, trim);
-        if id.touches == Touches::Chosen {
-            (places_mm, levels) = places::chosen(&pass)?;
+        if id.touches != Touches::Family {
+            let mut chosen = places::chosen(&pass)?;
+            if let Some(smaller) = chosen.smaller_ball_mm.filter(|_| id.touches == Touches::Advised) {
+                ball_mm = smaller;
+                job = text::job(&part, &believed, ball_mm);
+                pass = read(&job)?;
+                chosen = places::chosen(&pass)?;
+            }
+            (places_mm, levels) = (chosen.places_mm, chosen.levels);
             more_mm = Vec::new(); // those of `probe --next`
         }
         Ok(Self {
@@ -150,6 +161,7 @@ impl Case {
             places_mm,
             more_mm,
             levels,
+            ball_mm,
             first,
             before,
         })
@@ -163,7 +175,7 @@ impl Case {
     pub fn next_places(&self, history: &History) -> Result<Vec<f64>, Failure> {
         match self.id.touches {
             Touches::Family => Ok(places::together(&self.places_mm, &self.more_mm)),
-            Touches::Chosen => places::chosen_next(&self.pass, history),
+            Touches::Chosen | Touches::Advised => places::chosen_next(&self.pass, history),
         }
     }
 
@@ -187,10 +199,9 @@ impl Case {
     /// # Errors
     /// Places without a wall.
     pub fn probe(&self, number: u64, milled: &Milled, places_mm: &[f64]) -> Result<String, Failure> {
-        let ball = text::ball_diameter_mm(&self.part);
         let mut chance = Draw::new(&format!("{}/datum/{number}", self.id.family), self.id.seed);
         let datum_mm = [chance.normal(DATUM_MM), chance.normal(DATUM_MM)];
-        virtual_mill::probe_shifted(&self.pass, milled, places_mm, &self.levels, ball, datum_mm)
+        virtual_mill::probe_shifted(&self.pass, milled, places_mm, &self.levels, self.ball_mm, datum_mm)
     }
 }
 

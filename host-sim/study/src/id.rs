@@ -1,5 +1,5 @@
-//! Names of cases: `family/seed`, then as far as they are there `/nuisance`, `/chosen` where the touches are those that
-//! `truepath probe` chooses, and `/axis=value` where one thing was changed for a grid.
+//! Names of cases: `family/seed`, then as far as they are there `/nuisance`, `/chosen` or `/advised` where the touches are those that
+//! `truepath probe` chooses, with its own ball or the one it advises, and `/axis=value` where one thing was changed for a grid.
 
 use std::fmt;
 use std::str::FromStr;
@@ -65,21 +65,37 @@ pub struct Cell {
 }
 
 /// Where the parts are touched.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Touches {
     /// Where the family says, a few more after the first correction.
     #[default]
     Family,
     /// Where `truepath probe` would touch: 8 places at 3 heights, every part alike.
     Chosen,
+    /// There, and with the smaller ball that `truepath probe` advises where that of the job reaches the upper part of the wall only.
+    Advised,
 }
 
 impl Touches {
+    /// All of them, in the order of the tables.
+    pub const ALL: [Self; 3] = [Self::Family, Self::Chosen, Self::Advised];
+
     /// Its name in case ids and on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Family => "family",
             Self::Chosen => "chosen",
+            Self::Advised => "advised",
+        }
+    }
+
+    /// How parts are touched, in words.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Family => "where the family says",
+            Self::Chosen => "where `truepath probe` chooses",
+            Self::Advised => "where `truepath probe` chooses, with the ball that it advises",
         }
     }
 }
@@ -141,8 +157,12 @@ impl FromStr for CaseId {
         if nuisance.is_some() {
             parts.next();
         }
-        let chosen = parts.next_if_eq(&Touches::Chosen.name()).is_some();
-        let touches = if chosen { Touches::Chosen } else { Touches::Family };
+        let touched = |text: &&str| Touches::ALL.into_iter().find(|touches| touches.name() == *text);
+        let touches = parts.peek().and_then(touched).filter(|touches| *touches != Touches::Family);
+        if touches.is_some() {
+            parts.next();
+        }
+        let touches = touches.unwrap_or_default();
         let cell = parts.next().map(cell).transpose()?;
         match parts.next() {
             None => Ok(Self { family: family.name.to_owned(), seed, nuisance, touches, cell }),
@@ -176,6 +196,7 @@ mod tests {
             "bore/1001/stock-wave",
             "bore/1001/all/chosen",
             "wave/7001/chosen",
+            "wave/7001/radius/advised/noise=3",
             "wave/7001/wear/noise=3",
         ] {
             assert_eq!(text.parse::<CaseId>().expect("an id").to_string(), text);
@@ -188,6 +209,7 @@ mod tests {
             "cave/1001",
             "bore/1001/noise=1/x",
             "bore/1001/chosen/all",
+            "bore/1001/family",
         ] {
             assert!(text.parse::<CaseId>().is_err(), "{text}");
         }

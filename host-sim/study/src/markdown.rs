@@ -4,7 +4,6 @@ use std::fmt::Write;
 
 use truepath_ground::diagnostics::{Failure, Source};
 
-use super::id::Touches;
 use super::reference::Reached;
 use super::summary::{Row, Summary, Trouble, WORKS, WholeWall};
 use crate::codes::Y005;
@@ -84,11 +83,9 @@ pub fn results(summary: &Summary, reached: &[Reached]) -> String {
 pub fn nuisances(summary: &Summary) -> String {
     let mut text = String::new();
     for one in &summary.nuisances {
-        let touched =
-            if one.touches == Touches::Chosen.name() { "`truepath probe` chooses" } else { "the family says" };
         let seeds = one.set.name();
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "### {seeds} seeds, touched where {touched}\n");
+        let _ = writeln!(text, "### {seeds} seeds, touched {}\n", one.touches.words());
         text += &table("nuisance", one.rows.iter());
         text += &limits(&one.rows);
         text += &whole_walls("nuisance", one.rows.iter());

@@ -44,7 +44,7 @@ pub fn page(summary: &Summary, outcomes: &[Outcome]) -> Result<String, Failure> 
         text += &table(which.title(), axis.cells.iter().map(|(_, row)| row));
     }
     for one in &summary.nuisances {
-        let _ = writeln!(text, "<h2>With nuisances, {} seeds, touches: {}</h2>", one.set.name(), one.touches);
+        let _ = writeln!(text, "<h2>With nuisances, {} seeds, touched {}</h2>", one.set.name(), one.touches.words());
         text += &table("Nuisance", one.rows.iter());
     }
     text += "<h2>Where it stops working</h2>\n";

@@ -41,16 +41,28 @@ pub fn first(draw: &mut Draw, contour: &Contour, trim: f64) -> Vec<f64> {
     keep(places, contour, trim)
 }
 
-/// The places that a verification program of the job would touch, mm along the contour, and its heights, shares of the depth.
+/// What a verification program of a job would touch.
+#[derive(Clone, Debug)]
+pub struct Chosen {
+    /// Places, mm along the contour.
+    pub places_mm: Vec<f64>,
+    /// Heights, shares of the depth.
+    pub levels: Vec<f64>,
+    /// The ball that the plan advises in place of the job's, mm.
+    pub smaller_ball_mm: Option<f64>,
+}
+
+/// The places that a verification program of the job would touch.
 ///
 /// # Errors
 /// A contour that cannot be touched.
-pub fn chosen(pass: &Pass) -> Result<(Vec<f64>, Vec<f64>), Failure> {
+pub fn chosen(pass: &Pass) -> Result<Chosen, Failure> {
     let plan = plan(pass, &Settings::default(), &mut |_| ())?;
     let depth = float(pass.core.setup.axial_depth);
     let heights = plan.places.first().map(|place| place.heights.as_slice()).unwrap_or_default();
     let levels = heights.iter().map(|height| height.above_tip_mm / depth).collect();
-    Ok((plan.places.iter().map(|place| place.s_mm).collect(), levels))
+    let places_mm = plan.places.iter().map(|place| place.s_mm).collect();
+    Ok(Chosen { places_mm, levels, smaller_ball_mm: plan.smaller_ball_mm })
 }
 
 /// The places of the next part that `truepath probe --next` would touch, given the parts of a history, mm along the contour.

@@ -214,7 +214,7 @@ pub struct NuisanceSummary {
     /// Which seeds.
     pub set: Set,
     /// Where the parts are touched.
-    pub touches: &'static str,
+    pub touches: Touches,
     /// One row a nuisance, the first the same cases without any.
     pub rows: Vec<Row>,
 }
@@ -263,7 +263,7 @@ pub fn summary(program: &str, outcomes: &[Outcome]) -> Summary {
     let axes: Vec<AxisSummary> = Axis::ALL.into_iter().filter_map(|axis| axis_summary(axis, &cases)).collect();
     let nuisances = [Set::Tuning, Set::Test, Set::Random].into_iter().flat_map(|set| {
         let of = |touches| nuisance_summary(set, touches, &cases);
-        [Touches::Family, Touches::Chosen].into_iter().filter_map(of).collect::<Vec<_>>()
+        Touches::ALL.into_iter().filter_map(of).collect::<Vec<_>>()
     });
     let trouble = |what: &dyn Fn(&Outcome) -> Option<String>| -> Vec<Trouble> {
         let each = outcomes.iter().filter_map(|o| Some(Trouble { case: o.case.clone(), what: what(o)? }));
@@ -362,7 +362,7 @@ fn nuisance_summary(set: Set, touches: Touches, cases: &[(CaseId, &Outcome)]) ->
         (!outcomes.is_empty()).then(|| row(nuisance.map_or("none", Nuisance::name), &outcomes))
     });
     let rows: Vec<Row> = rows.collect();
-    (!rows.is_empty()).then_some(NuisanceSummary { set, touches: touches.name(), rows })
+    (!rows.is_empty()).then_some(NuisanceSummary { set, touches, rows })
 }
 
 fn row(name: &str, outcomes: &[&Outcome]) -> Row {
@@ -492,7 +492,7 @@ mod tests {
             .map(|one| (one.set, one.touches, one.rows.iter().map(|row| (row.name.as_str(), row.cases)).collect()))
             .collect();
         let family = vec![("none", 1), ("stock-wave", 1), ("all", 1)];
-        assert_eq!(rows, [(Set::Tuning, "family", family), (Set::Test, "chosen", vec![("all", 1)])]);
+        assert_eq!(rows, [(Set::Tuning, Touches::Family, family), (Set::Test, Touches::Chosen, vec![("all", 1)])]);
         assert!(summary.weak.is_empty(), "a factor of 3 with all nuisances is no weakness of the family");
     }
 }

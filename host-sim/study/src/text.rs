@@ -59,8 +59,8 @@ fn feed(part: &Part, contour: &Contour, k: usize) -> f64 {
     rounded(part.cut.feed_mm_per_min * share, 1.0)
 }
 
-/// The job.
-pub fn job(part: &Part, prior: &Prior) -> String {
+/// The job, touched with a ball of so many millimetres.
+pub fn job(part: &Part, prior: &Prior, ball_mm: f64) -> String {
     let cut = &part.cut;
     let wall = if part.contour.side == Side::Right { "right" } else { "left" };
     let [ktc, krc, kte, kre] = prior.coefficients;
@@ -73,7 +73,7 @@ pub fn job(part: &Part, prior: &Prior) -> String {
          [force]\nktc_n_per_mm2 = {ktc}\nkrc_n_per_mm2 = {krc}\nkte_n_per_mm = {kte}\nkre_n_per_mm = {kre}\n\
          model = \"{}\"\n\n\
          [machine]\nstiffness_x_n_per_mm = {k}\nstiffness_y_n_per_mm = {k}\n\n\
-         [probe]\nball_diameter_mm = {}\nformat = \"linuxcnc\"\nz_reference = \"centre\"\n\n\
+         [probe]\nball_diameter_mm = {ball_mm}\nformat = \"linuxcnc\"\nz_reference = \"centre\"\n\n\
          [correct]\nclamp_mm = 1.0\n",
         cut.allowance_mm,
         2.0 * cut.radius_mm,
@@ -81,7 +81,6 @@ pub fn job(part: &Part, prior: &Prior) -> String {
         cut.helix_deg,
         cut.depth_mm,
         part.model,
-        ball_diameter_mm(part),
     )
 }
 

@@ -60,6 +60,9 @@ pub struct DesignWorkspace<'a, R = InOrder> {
     /// Wall error that parts have shown beside what the model predicts, as long as the contour's own samples; empty where
     /// none is known. The correction cancels it as well.
     pub residual: &'a [Offset],
+    /// Standard deviation of the wall by what is beside the model, which the fit's parameters do not have, as long as the contour's own
+    /// samples; empty where none is known.
+    pub beside_sigma: &'a [Offset],
     /// Who reads the walls.
     pub reader: R,
 }

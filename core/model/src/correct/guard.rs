@@ -112,7 +112,7 @@ pub fn guarded_design(
         }
         hand_out(workspace.scratch, made.sigma);
         let both = [&mut *made.nodes, &mut *made.unguarded];
-        made.damped = damp(machine.path, uncorrected, both, workspace.scratch);
+        made.damped = damp(machine.path, uncorrected, both, workspace.scratch, workspace.beside_sigma);
         state = if made.damped.is_none() { Deviations::Current } else { Deviations::Stale };
         if state == Deviations::Stale {
             passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());

@@ -54,6 +54,7 @@
 //!     updates: &mut vec![Update::default(); samples],
 //!     scratch: &mut vec![Scratch::default(); samples],
 //!     residual: &[],
+//!     beside_sigma: &[],
 //!     reader: InOrder,
 //! };
 //! let (mut nodes, mut predicted) = (vec![Node::default(); samples], vec![Predicted::default(); samples]);

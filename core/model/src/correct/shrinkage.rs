@@ -6,15 +6,15 @@
 //! the uncorrected wall, `σ` the standard deviation of the wall beside the sample. `B` stands for the whole part, so that
 //! a wall whose own error is small is still corrected as long as it is known well beside the largest. The ends are from
 //! random machines: where `B` is more than 3σ, most corrections by the whole came out several times better, and damping
-//! them costs more than it saves; a wall that is known to no better than the largest error is left alone. Limits: `σ` is
-//! that of the fit's parameters, not of what the model lacks; a share makes the wall better with more certainty, but by
-//! less.
+//! them costs more than it saves; a wall that is known to no better than the largest error is left alone. `σ` is that of the fit's
+//! parameters and, where a caller knows it, of what is beside the model. Limits: a share makes the wall better with more certainty,
+//! but by less.
 
 use super::node::Node;
 use super::refine::settle_ends;
 use super::scratch::{Doubt, Scratch};
 use crate::cut::Path;
-use truepath_units::{Offset, Real};
+use truepath_units::{Offset, Real, hypot_nm};
 
 /// Standard deviations of the wall that the largest error has to outweigh for a whole correction.
 const SIGMAS: i32 = 3;
@@ -36,17 +36,20 @@ pub struct Damped {
 }
 
 /// Damps a correction, and the one without guard beside it, where its wall is known badly beside the largest error of the
-/// uncorrected wall. `slots` hold the [deviations](super::uncertainty::deviations) of the wall and are overwritten.
+/// uncorrected wall. `slots` hold the [deviations](super::uncertainty::deviations) of the wall and are overwritten; `beside` are those of
+/// what is beside the model, or empty.
 pub(super) fn damp(
     path: &Path,
     uncorrected: Offset,
     [nodes, unguarded]: [&mut [Node]; 2],
     slots: &mut [Scratch],
+    beside: &[Offset],
 ) -> Option<Damped> {
     let samples = path.samples().iter().skip(path.first());
-    for (slot, sample) in slots.iter_mut().zip(samples) {
+    let beside = beside.iter().copied().chain(core::iter::repeat(Offset::ZERO));
+    for ((slot, sample), beside) in slots.iter_mut().zip(samples).zip(beside) {
         // Around a sharp inside corner the correction is no larger than beside it, or spares the wall.
-        let sigma = if sample.near_corner { Offset::ZERO } else { slot.deviation().aimed };
+        let sigma = if sample.near_corner { Offset::ZERO } else { hypot_nm(slot.deviation().aimed, beside) };
         *slot = Doubt { outweighed: sigma.scaled(Real::from_int(SIGMAS)), sigma }.into();
     }
     Scratch::envelope(slots, SLOPE, path.is_closed());

@@ -15,6 +15,8 @@ struct Case {
     path: Path<'static>,
     prior: Prior,
     fit: Fit,
+    /// Standard deviation of what is beside the model; empty for nothing.
+    beside_sigma: Vec<Offset>,
 }
 
 /// What a design gave.
@@ -51,7 +53,7 @@ fn probed(places: &[i32]) -> Case {
     let cuts = [Cut { path, points: observations.len(), part: 0 }];
     let fit =
         identify::identify(&cuts, &prior, &mut [], &mut observations, |_, _| Vector::ZERO, &mut workspace, &mut |_| ());
-    Case { path, prior, fit }
+    Case { path, prior, fit, beside_sigma: Vec::new() }
 }
 
 impl Case {
@@ -92,6 +94,7 @@ impl Case {
             updates: &mut vec![Update::default(); n],
             scratch: &mut vec![Scratch::default(); n],
             residual: &[],
+            beside_sigma: &self.beside_sigma,
             reader: InOrder,
         };
         let mut nodes = vec![Node::default(); n];
@@ -211,6 +214,28 @@ fn a_wall_that_is_known_is_corrected_by_the_whole_and_one_that_is_not_by_a_share
     }
     // What is reported is the wall of what is commanded.
     assert!(made.predicted[100].after.mean.abs() > Offset::from_um(2));
+}
+
+#[test]
+fn a_wall_beside_which_the_model_is_not_trusted_is_corrected_by_a_share() {
+    let mut case = case();
+    let whole = case.made(&Case::wanted(None));
+    let worst = whole.predicted.iter().map(|p| p.before.mean.abs()).max().unwrap();
+    // Behind the corner uneven stock, say: known to half of the largest error.
+    let from = whole.nodes.len() * 3 / 4;
+    let sigma = |at: usize| if at < from { Offset::ZERO } else { worst.scaled(Real::HALF) };
+    case.beside_sigma = (0..whole.nodes.len()).map(sigma).collect();
+    let made = case.made(&Case::wanted(None));
+    let damped = made.damped.expect("its σ is large");
+    assert!((damped.least - Real::HALF).abs() < Real::ratio(1, 50) && damped.to + 1 == made.nodes.len(), "{damped:?}");
+    let last = made.nodes.len() - 40;
+    let (share, all) = (made.nodes[last].total().y.nm(), whole.nodes[last].total().y.nm());
+    assert!((share * 2 - all).abs() * 20 < all.abs(), "{share} of {all}");
+    // Where it no longer reaches, all stays as it was, to the last bit.
+    assert!((50..from).contains(&damped.from), "{damped:?}");
+    assert_eq!(made.nodes[..damped.from], whole.nodes[..damped.from]);
+    // What is handed out is that of the fit: the caller knows the other.
+    assert!(made.sigma.iter().max() < Some(&worst.scaled(Real::HALF)));
 }
 
 #[test]

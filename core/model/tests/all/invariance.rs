@@ -117,6 +117,7 @@ fn designed(machine: &Loop) -> Vec<Node> {
         updates: &mut vec![Update::default(); n],
         scratch: &mut vec![Scratch::default(); n],
         residual: &[],
+        beside_sigma: &[],
         reader: InOrder,
     };
     correct::design(machine, &wanted, &mut nodes, &mut predicted, &mut workspace, &mut |_| ());

@@ -43,6 +43,7 @@ fn left_by(law: &str, blocks: &[Block]) -> (f64, f64) {
         updates: &mut vec![Update::default(); n],
         scratch: &mut vec![Scratch::default(); n],
         residual: &[],
+        beside_sigma: &[],
         reader: InOrder,
     };
     let wanted = Design { law, target: Target::Mean, band: Band::WHOLE, max_gouge: None };

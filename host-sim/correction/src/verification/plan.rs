@@ -122,6 +122,8 @@ pub struct Plan {
     pub wall_sigma_mm: [f64; 2],
     /// Why the heights are what they are, where they were chosen for the profile of the wall.
     pub heights_why: Option<String>,
+    /// A ball that would touch much more of the height of the wall, mm; `None` where that of the job will do.
+    pub smaller_ball_mm: Option<f64>,
     /// What the job does not say and was taken from the program or a default.
     pub assumed: Vec<Assumed>,
     /// What the user should know.
@@ -145,6 +147,7 @@ impl Plan {
             unknowns: Vec::new(),
             wall_sigma_mm: [0.0; 2],
             heights_why: setup.heights_why,
+            smaller_ball_mm: None,
             assumed: pass.job.assumed.clone(),
             warnings: pass.warnings.clone(),
         }
@@ -269,6 +272,7 @@ pub fn plan_every(passes: &[Pass], settings: &Settings, progress: &mut dyn FnMut
     joint.warnings.extend(warnings);
     let mut plan =
         Plan { kept_off, unknowns: reason::unknowns(&chosen.known, &prior), wall_sigma_mm: chosen.wall_sigma, ..joint };
+    plan.smaller_ball_mm = Reach::of(&plan).smaller_ball(&plan, law);
     let said = unit.remarks(|unit| plan_warnings(&plan, law, unit));
     plan.warnings.extend(said);
     progress(1.0);
@@ -333,21 +337,47 @@ const BALLS_MM: [f64; 7] = [6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0];
 /// of the second correction from 4.1 to 6.0 times.
 const REACHED: (f64, f64) = (0.4, 0.6);
 
-/// The ball that would touch more of the height, where that of the job touches the upper part of the wall only.
-fn smaller_ball(plan: &Plan, spread_mm: f64, depth_mm: f64, unit: Unit) -> Option<String> {
-    let more = |ball: f64| spread_mm + (plan.ball_mm - ball) / 2.0;
-    let ball = BALLS_MM.into_iter().find(|ball| *ball < plan.ball_mm && more(*ball) >= REACHED.1 * depth_mm)?;
-    let share = |height: f64| 100.0 * height / depth_mm;
-    (spread_mm < REACHED.0 * depth_mm).then(|| {
+/// How far up and down a plan touches the walls, and how high they are, mm: the largest of each.
+struct Reach {
+    spread_mm: f64,
+    depth_mm: f64,
+}
+
+impl Reach {
+    fn of(plan: &Plan) -> Self {
+        let spread = |place: &Place| {
+            let heights = &place.heights;
+            heights.first().map_or(0.0, |h| h.above_tip_mm) - heights.last().map_or(0.0, |h| h.above_tip_mm)
+        };
+        let depths = plan.places.iter().flat_map(|p| &p.heights).map(|h| h.above_tip_mm / h.fraction);
+        Self { spread_mm: plan.places.iter().map(spread).fold(0.0, f64::max), depth_mm: depths.fold(0.0, f64::max) }
+    }
+
+    /// What another ball would touch, mm.
+    fn with_ball(&self, plan: &Plan, ball_mm: f64) -> f64 {
+        self.spread_mm + (plan.ball_mm - ball_mm) / 2.0
+    }
+
+    /// The ball that would touch more of the height, where that of the job touches the upper part of the wall only, mm.
+    fn smaller_ball(&self, plan: &Plan, law: WallLaw) -> Option<f64> {
+        if law != WallLaw::Helical || plan.most_heights() < 2 || self.spread_mm >= REACHED.0 * self.depth_mm {
+            return None;
+        }
+        let mut smaller = BALLS_MM.into_iter().filter(|ball| *ball < plan.ball_mm);
+        smaller.find(|ball| self.with_ball(plan, *ball) >= REACHED.1 * self.depth_mm)
+    }
+
+    fn words(&self, plan: &Plan, ball_mm: f64, unit: Unit) -> String {
+        let share = |height: f64| 100.0 * height / self.depth_mm;
         format!(
             "a ball of {} {name} touches {:.0} % of the height of this wall, the rest of it is the model's word; one of {} {name} touches {:.0} %",
             unit.of(plan.ball_mm),
-            share(spread_mm),
-            unit.of(ball),
-            share(more(ball)),
+            share(self.spread_mm),
+            unit.of(ball_mm),
+            share(self.with_ball(plan, ball_mm)),
             name = unit.name()
         )
-    })
+    }
 }
 
 /// What the user should know of a plan.
@@ -374,20 +404,15 @@ fn plan_warnings(plan: &Plan, law: WallLaw, unit: Unit) -> Vec<String> {
             hidden.join(", ")
         ));
     }
-    let spread = |place: &Place| {
-        let heights = &place.heights;
-        heights.first().map_or(0.0, |h| h.above_tip_mm) - heights.last().map_or(0.0, |h| h.above_tip_mm)
-    };
-    let spread = plan.places.iter().map(spread).fold(0.0, f64::max);
-    let depth = plan.places.iter().flat_map(|p| &p.heights).map(|h| h.above_tip_mm / h.fraction).fold(0.0, f64::max);
+    let reach = Reach::of(plan);
     // Over less than that nothing bends that would matter.
-    if law == WallLaw::Helical && plan.most_heights() > 1 && spread < 1.0 && depth > 2.5 {
+    if law == WallLaw::Helical && plan.most_heights() > 1 && reach.spread_mm < 1.0 && reach.depth_mm > 2.5 {
         out.push(format!(
             "the heights lie within {:.2} {name}: bending is hardly seen; a smaller ball reaches lower",
-            unit.of(spread)
+            unit.of(reach.spread_mm)
         ));
     }
-    out.extend(smaller_ball(plan, spread, depth, unit).filter(|_| law == WallLaw::Helical && plan.most_heights() > 1));
+    out.extend(plan.smaller_ball_mm.map(|ball| reach.words(plan, ball, unit)));
     if plan.settings.free_width.is_some() {
         out.push("--free-width is taken on trust: nothing else than the contour's wall is known".to_owned());
     }

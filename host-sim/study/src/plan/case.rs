@@ -83,14 +83,15 @@ impl Case {
             let source = |name: &str, text: &str| Source::new(format!("plan/{seed}/{name}"), text.as_bytes().to_vec());
             Pass::new(JobFile::parse(source("job.toml", job), FilePath::new(""))?, source("program.nc", &program))
         };
-        let trial = read(&text::job(&part, &mistakes.about(&machine, 1.0)))?;
+        let ball_mm = text::ball_diameter_mm(&part);
+        let trial = read(&text::job(&part, &mistakes.about(&machine, 1.0), ball_mm))?;
         let (milled, before) = scaled(&trial, &mut machine, error_mm)?;
-        let job = text::job(&part, &mistakes.about(&machine, 1.0));
+        let job = text::job(&part, &mistakes.about(&machine, 1.0), ball_mm);
         let pass = read(&job)?;
         let draw = &mut chance("places");
         let places = places::first(draw, &part.contour, judged_trim_mm(part.cut.radius_mm));
         let datum = [draw.normal(DATUM_MM), draw.normal(DATUM_MM)];
-        let probe = touched(&milled, &places, text::ball_diameter_mm(&part), datum);
+        let probe = touched(&milled, &places, ball_mm, datum);
         let tolerance_mm = rounded((before.profile_mm * TOLERANCE_SHARE).max(LEAST_TOLERANCE_MM), 1e-4);
         Ok(Self { seed, kind, part, program, job, pass, machine, contact_ratio, tolerance_mm, before, probe })
     }

@@ -183,7 +183,8 @@ impl ShopCase {
             };
             let stated = Prior { coefficients: material.stated, stiffness_n_per_mm: yielding.stated_n_per_mm };
             let id = CaseId { family: family.name.to_owned(), seed, nuisance: None, touches, cell: None };
-            let (program, job) = (text::program(&part, "shop"), text::job(&part, &stated));
+            let ball_mm = text::ball_diameter_mm(&part);
+            let (program, job) = (text::program(&part, "shop"), text::job(&part, &stated, ball_mm));
             let source = |name: &str, text: &str| Source::new(format!("{seed}/{name}"), text.as_bytes().to_vec());
             let file = JobFile::parse(source("job.toml", &job), FilePath::new(""))?;
             let pass = Pass::new(file, source("program.nc", &program))?;
@@ -197,7 +198,10 @@ impl ShopCase {
                 continue;
             }
             let (places_mm, levels) = match touches {
-                Touches::Chosen => places::chosen(&pass)?,
+                Touches::Chosen | Touches::Advised => {
+                    let chosen = places::chosen(&pass)?;
+                    (chosen.places_mm, chosen.levels)
+                }
                 Touches::Family => {
                     (places::first(draw, &part.contour, judged_trim_mm(part.cut.radius_mm)), part.levels.to_vec())
                 }
@@ -213,6 +217,7 @@ impl ShopCase {
                 places_mm,
                 more_mm: Vec::new(),
                 levels,
+                ball_mm,
                 first,
                 before,
             };

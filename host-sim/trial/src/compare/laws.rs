@@ -83,7 +83,7 @@ fn unguarded(pass: &Pass, machine: &Loop, law: Law) -> Vec<Node> {
     let wanted = pass.job.numbers.design(law);
     let mut buffers = Buffers::of(machine.path);
     let mut nodes = vec![Node::default(); machine.path.count()];
-    design(machine, &wanted, &mut nodes, &mut [], &mut buffers.workspace(&[]), &mut |_| ());
+    design(machine, &wanted, &mut nodes, &mut [], &mut buffers.workspace(&[], &[]), &mut |_| ());
     nodes
 }
 
@@ -98,7 +98,7 @@ fn model(
     let mut nodes = vec![Node::default(); machine.path.count()];
     let mut made = Guarded { nodes: &mut nodes, unguarded: &mut [], predicted: &mut [], sigma: &mut [], damped: None };
     let belief = (identified.prior(), identified.fit());
-    guarded_design(machine, belief, &wanted, &mut made, &mut buffers.workspace(&[]), &mut |step| {
+    guarded_design(machine, belief, &wanted, &mut made, &mut buffers.workspace(&[], &[]), &mut |step| {
         if let DesignStep::Done { permille, .. } = step {
             progress(f64::from(permille) / 1000.0);
         }

@@ -84,6 +84,7 @@ fn a_design_that_reads_half_of_the_heights_elsewhere_is_the_one_that_reads_them_
             updates: &mut vec![Default::default(); count],
             scratch: &mut vec![Scratch::default(); count],
             residual: &[],
+            beside_sigma: &[],
             reader: InOrder,
         };
         let (mut nodes, mut unguarded) = (vec![Node::default(); count], vec![Node::default(); count]);
@@ -116,9 +117,9 @@ fn a_profile_read_in_halves_is_the_one_read_in_order_also_where_no_wall_stands()
     machine.run(working.start, &mut states, |_| Vector::ZERO);
     let mut buffers = Buffers::of(&path);
     let in_order = read(InOrder, &machine, &states);
-    assert_eq!(read(buffers.workspace(&[]).reader, &machine, &states), in_order);
+    assert_eq!(read(buffers.workspace(&[], &[]).reader, &machine, &states), in_order);
     // Read again into the same memory.
-    assert_eq!(read(buffers.workspace(&[]).reader, &machine, &states), in_order);
+    assert_eq!(read(buffers.workspace(&[], &[]).reader, &machine, &states), in_order);
 }
 
 fn read(mut reader: impl WallReader, machine: &Loop, states: &[State]) -> Vec<Profile> {
