@@ -227,6 +227,27 @@ mod tests {
     }
 
     #[test]
+    fn the_words_of_a_job_are_all_keys_of_its_schema() {
+        let text = |path: &Path| std::fs::read_to_string(path).unwrap();
+        let schema: serde_json::Value = serde_json::from_str(&text(&root().join("docs/job.schema.json"))).unwrap();
+        let job = TARGETS.iter().find(|target| target.name == "job").unwrap();
+        let words = text(&dictionary(job));
+        let (mut open, mut keys) = (vec![&schema], 0);
+        while let Some(part) = open.pop() {
+            match part {
+                serde_json::Value::Object(object) => open.extend(object.values()),
+                serde_json::Value::Array(array) => open.extend(array),
+                _ => (),
+            }
+            for key in part["properties"].as_object().into_iter().flat_map(serde_json::Map::keys) {
+                assert!(words.lines().any(|line| line == format!("\"{key}\"")), "{key}");
+                keys += 1;
+            }
+        }
+        assert!(keys > 100, "{keys}");
+    }
+
+    #[test]
     fn a_file_is_an_input_for_every_choice() {
         assert_eq!(inputs(b"G0", 0), [b"G0"]);
         assert_eq!(inputs(b"G0", 2), [b"\x00G0", b"\x01G0"]);
