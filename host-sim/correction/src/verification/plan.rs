@@ -333,8 +333,7 @@ const TELLING: (f64, f64) = (0.005, 0.1);
 /// Diameters of balls that probes are sold with, mm, from the largest down.
 const BALLS_MM: [f64; 7] = [6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0];
 /// Touches over less than the first share of the height of a wall leave the rest of it to the model, and a ball that
-/// reaches the second is named. Over 24 studied machines balls of a third of the depth in place of 6 mm took the tenth percentile
-/// of the second correction from 4.1 to 6.0 times.
+/// reaches the second is named (`truepath study --touches advised`; docs/study.md has what it is worth).
 const REACHED: (f64, f64) = (0.4, 0.6);
 
 /// How far up and down a plan touches the walls, and how high they are, mm: the largest of each.
