@@ -18,8 +18,8 @@ struct Target {
     seeds: &'static [(&'static str, &'static [&'static str])],
     /// What an input begins with that its files do not have: the byte by which the target chooses a format.
     choices: u8,
-    /// Whether there is a dictionary of the words that its text is made of.
-    words: bool,
+    /// The dictionary of the words that its text is made of: a name in `fuzz/words`.
+    words: Option<&'static str>,
     /// Longest input, bytes.
     longest: u32,
 }
@@ -35,33 +35,33 @@ const TARGETS: [Target; 7] = [
             ("tests/data", &["nc", "ngc"]),
         ],
         choices: 2,
-        words: true,
+        words: Some("program"),
         longest: 2_000,
     },
     Target {
         name: "probe",
         seeds: &[("core/tests/data", &["txt", "csv", "log"]), ("host-sim/job/tests/data", &["txt", "csv", "log"])],
         choices: 6,
-        words: true,
+        words: Some("probe"),
         longest: 2_000,
     },
     Target {
         name: "job",
         seeds: &[("host-sim/demo", &["toml"]), ("host-sim/job/tests", &["toml"])],
         choices: 0,
-        words: true,
+        words: Some("job"),
         longest: 3_000,
     },
     Target {
         name: "five_axis",
         seeds: &[("examples/multiaxis", &["nc", "toml"]), ("fuzz/seeds/five_axis", &["nc"])],
         choices: 0,
-        words: true,
+        words: Some("program"),
         longest: 2_000,
     },
-    Target { name: "image", seeds: &[("fuzz/seeds/image", &["tpi"])], choices: 0, words: false, longest: 1_000 },
-    Target { name: "servo", seeds: &[("fuzz/seeds/servo", &["bin"])], choices: 0, words: false, longest: 16_000 },
-    Target { name: "device", seeds: &[("fuzz/seeds/device", &["bin"])], choices: 0, words: false, longest: 2_000 },
+    Target { name: "image", seeds: &[("fuzz/seeds/image", &["tpi"])], choices: 0, words: None, longest: 1_000 },
+    Target { name: "servo", seeds: &[("fuzz/seeds/servo", &["bin"])], choices: 0, words: None, longest: 16_000 },
+    Target { name: "device", seeds: &[("fuzz/seeds/device", &["bin"])], choices: 0, words: None, longest: 2_000 },
 ];
 
 /// Counters for every edge and comparison.
@@ -135,8 +135,8 @@ fn fuzz(target: &Target, binaries: &Path, length: Length, longest: Option<u32>) 
     let mut command = program(binaries.join(target.name));
     command.arg(format!("-max_len={}", longest.unwrap_or(target.longest))).arg(format!("-timeout={HANG}"));
     command.arg(format!("-artifact_prefix={}/", artifacts.display())).arg("-print_final_stats=1");
-    if target.words {
-        command.arg(format!("-dict={}", dictionary(target).display()));
+    if let Some(words) = target.words {
+        command.arg(format!("-dict={}", dictionary(words).display()));
     }
     command.arg(match length {
         Length::Runs(runs) => format!("-runs={runs}"),
@@ -167,10 +167,8 @@ fn inputs(bytes: &[u8], choices: u8) -> Vec<Vec<u8>> {
     }
 }
 
-/// The words of a target.
-fn dictionary(target: &Target) -> PathBuf {
-    // Five axes are programmed in the same words.
-    let name = if target.name == "five_axis" { "program" } else { target.name };
+/// The file of a dictionary.
+fn dictionary(name: &str) -> PathBuf {
     root().join("fuzz/words").join(name).with_extension("dict")
 }
 
@@ -222,7 +220,7 @@ mod tests {
         for target in &TARGETS {
             assert!(!seeds(target).is_empty(), "{}", target.name);
             assert!(root().join(format!("fuzz/targets/{}.rs", target.name)).is_file(), "{}", target.name);
-            let words = if target.words { std::fs::read_to_string(dictionary(target)).unwrap() } else { String::new() };
+            let words = target.words.map(|name| std::fs::read_to_string(dictionary(name)).unwrap()).unwrap_or_default();
             // As libFuzzer reads them: other bytes are escaped.
             let is_word =
                 |line: &str| line.len() > 2 && line.starts_with('"') && line.ends_with('"') && line.is_ascii();
@@ -236,8 +234,7 @@ mod tests {
     fn the_words_of_a_job_are_all_keys_of_its_schema() {
         let text = |path: &Path| std::fs::read_to_string(path).unwrap();
         let schema: serde_json::Value = serde_json::from_str(&text(&root().join("docs/job.schema.json"))).unwrap();
-        let job = TARGETS.iter().find(|target| target.name == "job").unwrap();
-        let words = text(&dictionary(job));
+        let words = text(&dictionary("job"));
         let (mut open, mut keys) = (vec![&schema], 0);
         while let Some(part) = open.pop() {
             match part {

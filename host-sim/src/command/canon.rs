@@ -64,6 +64,7 @@ impl Options {
             decimal: self.decimal,
             skip_block_delete: self.skip_block_delete,
             subprograms: self.subprograms.clone(),
+            ..CanonOptions::default()
         })
     }
 }

@@ -140,13 +140,12 @@ impl Case {
         }
         let mut more_mm = places::more(&part.contour, trim);
         if id.touches != Touches::Family {
-            let mut chosen = places::chosen(&pass)?;
-            if let Some(smaller) = chosen.smaller_ball_mm.filter(|_| id.touches == Touches::Advised) {
-                ball_mm = smaller;
-                job = text::job(&part, &believed, ball_mm);
-                pass = read(&job)?;
-                chosen = places::chosen(&pass)?;
-            }
+            let (with_ball, smaller, chosen) =
+                places::chosen_with_ball(pass, id.touches == Touches::Advised, |ball_mm| {
+                    job = text::job(&part, &believed, ball_mm);
+                    read(&job)
+                })?;
+            (pass, ball_mm) = (with_ball, smaller.unwrap_or(ball_mm));
             (places_mm, levels) = (chosen.places_mm, chosen.levels);
             more_mm = Vec::new(); // those of `probe --next`
         }

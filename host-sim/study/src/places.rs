@@ -65,6 +65,23 @@ pub fn chosen(pass: &Pass) -> Result<Chosen, Failure> {
     Ok(Chosen { places_mm, levels, smaller_ball_mm: plan.smaller_ball_mm })
 }
 
+/// The same, by a job with the ball that the plan advises where that is asked for: `with_ball` reads the job with another one.
+/// Gives the pass, and the ball if it is another.
+///
+/// # Errors
+/// A contour that cannot be touched.
+pub fn chosen_with_ball(
+    pass: Pass,
+    advised: bool,
+    with_ball: impl FnOnce(f64) -> Result<Pass, Failure>,
+) -> Result<(Pass, Option<f64>, Chosen), Failure> {
+    let chosen = chosen(&pass)?;
+    let Some(smaller) = chosen.smaller_ball_mm.filter(|_| advised) else { return Ok((pass, None, chosen)) };
+    let pass = with_ball(smaller)?;
+    let chosen = self::chosen(&pass)?;
+    Ok((pass, Some(smaller), chosen))
+}
+
 /// The places of the next part that `truepath probe --next` would touch, given the parts of a history, mm along the contour.
 ///
 /// # Errors

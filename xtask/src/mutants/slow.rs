@@ -25,7 +25,8 @@ pub fn judge(folder: &str, package: &str, mutants: &[Mutant], ends: &mut [Option
         .arg(&out);
     command.args(open.iter().flat_map(|mutant| ["--re".to_owned(), format!("^{}$", exactly(&mutant.name))]));
     // A property that fails is enough: its smallest example is looked for by nobody here, and takes longer than the time-out.
-    command.env("PROPTEST_MAX_SHRINK_ITERS", "0");
+    // Nothing is optimised, and a test's thread has 2 MiB of stack if nobody says otherwise: a computation takes more so.
+    command.env("PROPTEST_MAX_SHRINK_ITERS", "0").env("RUST_MIN_STACK", "16777216");
     let status = command.status().map_err(|e| Failure::Missing(format!("cargo mutants: {e}")))?;
     // 2: some survived, 3: some timed out; the files say which.
     if !matches!(status.code(), Some(0 | 2 | 3)) {

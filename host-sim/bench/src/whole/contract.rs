@@ -232,7 +232,7 @@ impl Contract {
     }
 }
 
-/// The least role of a request, by the table of `docs/link.md`.
+/// The least role of a request, by the table of `docs/link.md`. Every request is named: a new one has to be judged.
 const fn needed(ask: &Ask<'_>) -> Role {
     match ask {
         Ask::AcknowledgeDrivesDisabled
@@ -251,6 +251,25 @@ const fn needed(ask: &Ask<'_>) -> Role {
         | Ask::Compute
         | Ask::Install
         | Ask::Confirm => Role::Engineer,
-        _ => Role::Read,
+        Ask::Hello
+        | Ask::Status
+        | Ask::Check(_)
+        | Ask::List
+        | Ask::Settings
+        | Ask::Trace
+        | Ask::Recording { .. }
+        | Ask::Progress
+        | Ask::Keys
+        | Ask::Provision(_)
+        | Ask::ProvisionAs { .. }
+        | Ask::Revoke(_)
+        | Ask::Log { .. }
+        | Ask::Challenge
+        | Ask::Login { .. }
+        | Ask::Logout
+        | Ask::Session
+        | Ask::Timing
+        | Ask::Update
+        | Ask::ProvisionFirmware { .. } => Role::Read,
     }
 }

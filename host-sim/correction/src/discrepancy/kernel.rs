@@ -10,9 +10,10 @@
 //! | level | force larger by a share, on the whole part: wear (a random walk from part to part) and another blank | – |
 //! | size | the cutter's size, from part to part (a random walk) | – |
 //!
-//! The walks are counted back from the next part, so that the fitted parameters are those of the part that is to be
-//! corrected. Half of the keyed kind holds whatever the direction of the wall, half only where walls are parallel,
-//! because a machine may yield otherwise along another axis.
+//! The walks are counted back from the newest part, so that the fitted parameters are its own: what is believed of a
+//! machine beforehand is no better known of the next part than of this one, and takes nothing away from what this one shows. The
+//! next part is expected to be like it, give or take one step. Half of the keyed kind holds whatever the direction of the wall,
+//! half only where walls are parallel, because a machine may yield otherwise along another axis.
 
 use truepath_core::cut::Path;
 use truepath_ground::hypotenuse::hypot;
@@ -232,18 +233,23 @@ impl Kernel {
         Self { wear, height, noise, ..*self }
     }
 
-    /// Standard deviation of the level of force of the next part over that of the last, natural logarithm.
+    /// Standard deviation of the level of force of the next part over that of the newest, natural logarithm.
     pub(super) fn next_level(&self) -> f64 {
-        self.levels([1, 1]).sqrt()
+        hypot(self.wear, BLANK)
     }
 
-    /// Covariance of a place of one part with the level of force of another over that of the next, natural logarithm, mm; the parts lie
+    /// Variance of a place from the newest part to the next by the level of force and the size of the cutter, mm².
+    pub(super) fn to_next(&self, place: &Feature) -> f64 {
+        (place.load * self.next_level()).powi(2) + SIZE.powi(2)
+    }
+
+    /// Covariance of a place of one part with the level of force of another over that of the newest, natural logarithm, mm; the parts lie
     /// so many before the next one (1 for the newest).
     pub(super) fn with_level(&self, place: &Feature, parts_ago: [u32; 2]) -> f64 {
         place.load * self.levels(parts_ago)
     }
 
-    /// Covariance of the levels of force of two parts.
+    /// Covariance of the levels of force of two parts over that of the newest.
     fn levels(&self, parts_ago: [u32; 2]) -> f64 {
         let own = if parts_ago[0] == parts_ago[1] { BLANK.powi(2) } else { 0.0 };
         self.wear.powi(2) * shared(parts_ago) + own
@@ -256,7 +262,27 @@ impl Kernel {
     }
 }
 
-/// How many steps of a walk that is counted back from the next part two parts have in common.
+/// How many steps of a walk that is counted back from the newest part two parts have in common.
 fn shared(parts_ago: [u32; 2]) -> f64 {
-    f64::from(parts_ago[0].min(parts_ago[1]).min(LONGEST))
+    f64::from(parts_ago[0].min(parts_ago[1]).saturating_sub(1).min(LONGEST))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn place(load: f64) -> Feature {
+        Feature { contour: 0, s: 1.0, engaged: [1.0; 3], normal: [1.0, 0.0], load, stock: 0.0 }
+    }
+
+    #[test]
+    fn the_newest_part_is_known_by_its_own_points_and_the_next_is_a_step_farther() {
+        let kernel = Kernel { wear: 0.1, ..Kernel::EVEN };
+        let (a, b) = (place(0.2), place(0.3));
+        let steps = |parts_ago| (kernel.between_parts(&a, &b, parts_ago) / (0.06 * 0.01)).round() as u32;
+        assert_eq!([[1, 1], [1, 5], [2, 2], [3, 5], [500, 600]].map(steps), [0, 0, 1, 2, 100]);
+        let next = kernel.to_next(&a);
+        assert!((next - (0.04 * (0.01 + BLANK * BLANK) + SIZE * SIZE)).abs() < 1e-12, "{next}");
+        assert!((next - least_change(0.2).powi(2)).abs() > 1e-6 && kernel.next_level() > kernel.wear);
+    }
 }

@@ -24,7 +24,7 @@ pub(super) const SHARED: usize = COUNT - 2;
 pub struct Own {
     /// Its datum, prior standard deviations.
     pub datum: [f64; 2],
-    /// Its level of force over that of the next part, natural logarithm, where it is fitted: that of the last part is not.
+    /// Its level of force over that of the last part, natural logarithm, where it is fitted: that of the last part is not.
     pub level: f64,
 }
 

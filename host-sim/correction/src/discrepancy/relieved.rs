@@ -307,7 +307,7 @@ struct Beside {
     more: Vec<f64>,
     /// What a millimetre more does to every point, mm.
     by_stock: Vec<f64>,
-    /// The level of force of every part before the last over that of the next, natural logarithm.
+    /// The level of force of every part before the last over that of the last, natural logarithm.
     levels: Vec<f64>,
     /// That of its part at every point, 0 on the last part.
     level: Vec<f64>,

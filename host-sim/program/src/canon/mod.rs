@@ -54,6 +54,7 @@ pub fn write_canon(
     let start = Options {
         start: Axes::ORIGIN,
         skip_block_delete: options.skip_block_delete,
+        block_limit: options.block_limit,
         dialect: options.dialect,
         as_linuxcnc: true,
         decimal: options.decimal,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use truepath_core::gcode::{Dialect, PointlessLength, Units};
+use truepath_core::gcode::{Dialect, Options, PointlessLength, Units};
 
 use super::parameter_file::ParameterFile;
 use super::tool_table::ToolTable;
@@ -22,6 +22,8 @@ pub struct CanonOptions {
     pub decimal: PointlessLength,
     /// Whether blocks with `/` are skipped.
     pub skip_block_delete: bool,
+    /// How many blocks may be executed beyond as many as the program has lines; loops that run longer are an error.
+    pub block_limit: u32,
     /// The folder with the files of subprograms; by default that of the program.
     pub subprograms: Option<PathBuf>,
 }
@@ -35,6 +37,7 @@ impl Default for CanonOptions {
             dialect: Dialect::Linuxcnc,
             decimal: PointlessLength::Calculator,
             skip_block_delete: false,
+            block_limit: Options::default().block_limit,
             subprograms: None,
         }
     }

@@ -183,11 +183,14 @@ impl ShopCase {
             };
             let stated = Prior { coefficients: material.stated, stiffness_n_per_mm: yielding.stated_n_per_mm };
             let id = CaseId { family: family.name.to_owned(), seed, nuisance: None, touches, cell: None };
-            let ball_mm = text::ball_diameter_mm(&part);
-            let (program, job) = (text::program(&part, "shop"), text::job(&part, &stated, ball_mm));
+            let mut ball_mm = text::ball_diameter_mm(&part);
+            let (program, mut job) = (text::program(&part, "shop"), text::job(&part, &stated, ball_mm));
             let source = |name: &str, text: &str| Source::new(format!("{seed}/{name}"), text.as_bytes().to_vec());
-            let file = JobFile::parse(source("job.toml", &job), FilePath::new(""))?;
-            let pass = Pass::new(file, source("program.nc", &program))?;
+            let read = |job: &str| {
+                let file = JobFile::parse(source("job.toml", job), FilePath::new(""))?;
+                Pass::new(file, source("program.nc", &program))
+            };
+            let mut pass = read(&job)?;
             let first = virtual_mill::mill(&pass, &machine, None)?;
             let before = first.judge();
             let spoilt = before.score.max_error_mm;
@@ -199,7 +202,12 @@ impl ShopCase {
             }
             let (places_mm, levels) = match touches {
                 Touches::Chosen | Touches::Advised => {
-                    let chosen = places::chosen(&pass)?;
+                    let (with_ball, smaller, chosen) =
+                        places::chosen_with_ball(pass, touches == Touches::Advised, |ball_mm| {
+                            job = text::job(&part, &stated, ball_mm);
+                            read(&job)
+                        })?;
+                    (pass, ball_mm) = (with_ball, smaller.unwrap_or(ball_mm));
                     (chosen.places_mm, chosen.levels)
                 }
                 Touches::Family => {
