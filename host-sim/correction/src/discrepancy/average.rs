@@ -400,7 +400,7 @@ impl Discrepancy {
                 .collect();
             let own = kernel.lasting(&self.points.extents, place, place);
             let variance = (prior + own - factored.known(&covariance)).max(0.0);
-            repeat += share * kernel.to_next(place);
+            repeat += share * kernel.next_step(place);
             let mean = factored.mean(&covariance);
             first += share * mean;
             second += share * (variance + mean * mean);

@@ -239,7 +239,7 @@ impl Kernel {
     }
 
     /// Variance of a place from the newest part to the next by the level of force and the size of the cutter, mm².
-    pub(super) fn to_next(&self, place: &Feature) -> f64 {
+    pub(super) fn next_step(&self, place: &Feature) -> f64 {
         (place.load * self.next_level()).powi(2) + SIZE.powi(2)
     }
 
@@ -281,7 +281,7 @@ mod tests {
         let (a, b) = (place(0.2), place(0.3));
         let steps = |parts_ago| (kernel.between_parts(&a, &b, parts_ago) / (0.06 * 0.01)).round() as u32;
         assert_eq!([[1, 1], [1, 5], [2, 2], [3, 5], [500, 600]].map(steps), [0, 0, 1, 2, 100]);
-        let next = kernel.to_next(&a);
+        let next = kernel.next_step(&a);
         assert!((next - (0.04 * (0.01 + BLANK * BLANK) + SIZE * SIZE)).abs() < 1e-12, "{next}");
         assert!((next - least_change(0.2).powi(2)).abs() > 1e-6 && kernel.next_level() > kernel.wear);
     }
