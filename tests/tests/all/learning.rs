@@ -74,20 +74,24 @@ fn an_error_that_no_machine_of_the_model_makes_is_learned_beside_it() {
     let plant = HELIX[2]
         .replace("[[0.00083, 0.00007], [0.00007, 0.00105]]", "[[0.00083, 0.00022], [-0.00010, 0.00105]]")
         .replace("seed = 2", "seed = 2\nedge_wear_per_m = 4.0\nstock_variation_mm = 0.04\nstock_wavelength_mm = 60.0");
-    let shop = Shop::new(HELIX[0], HELIX[1], &plant);
+    let mut shop = Shop::new(HELIX[0], HELIX[1], &plant);
     let places = [12.0, 20.0, 28.0, 36.0, 42.0, 45.0, 48.0, 51.0, 54.0, 60.0, 68.0, 76.0, 84.0, 92.0];
     let before = shop.error(None);
-    let (corrected, history) = shop.first(&places);
-    let first = shop.error(Some(&corrected));
-    let learned = shop.next(&history, &corrected, &places);
-    let second = shop.error(Some(&learned.corrected));
-    println!("{before:.4} -> {first:.4} -> {second:.4} mm, {:?}", learned.verdict);
-    let residual = learned.verdict.residual.unwrap();
-    assert!(residual.max_mm > 0.002);
-    // Touches in the corner tell of it at once: the first correction cancels most of it already.
-    assert!(first < before / 30.0 && second < before / 40.0);
-    let held = learned.verdict.holdout_residual_mm.unwrap();
-    assert!(held.after_mm < held.before_mm + 0.001);
+    // At the second of these chances of the probe, machine and what is beside it come to rest only by shorter steps.
+    for chance in [0, 600] {
+        shop.chance = chance;
+        let (corrected, history) = shop.first(&places);
+        let first = shop.error(Some(&corrected));
+        let learned = shop.next(&history, &corrected, &places);
+        let second = shop.error(Some(&learned.corrected));
+        println!("{chance}: {before:.4} -> {first:.4} -> {second:.4} mm, {:?}", learned.verdict);
+        let residual = learned.verdict.residual.unwrap();
+        assert!(residual.max_mm > 0.002, "{chance}");
+        // Touches in the corner tell of it at once: the first correction cancels most of it already.
+        assert!(first < before / 30.0 && second < before / 40.0, "{chance}");
+        let held = learned.verdict.holdout_residual_mm.unwrap();
+        assert!(held.after_mm < before / 100.0, "{chance}: {held:?}");
+    }
 }
 
 #[test]

@@ -32,10 +32,7 @@ const MOST_STEP: f64 = 0.15;
 const LEAST_STOCK: f64 = 0.05;
 
 /// Times that parameters are fitted to points relieved of a discrepancy that has changed.
-const ROUNDS: u32 = 6;
-
-/// The same about stock, which comes step by step.
-const STOCKED_ROUNDS: u32 = 9;
+const ROUNDS: u32 = 9;
 
 /// Times that kernels are chosen anew: then they stay, because between two of them what follows would go to and fro.
 const FREE: u32 = 3;
@@ -177,33 +174,28 @@ struct Task<'t, 'a> {
 impl Task<'_, '_> {
     /// Machine and material about even stock, and what is beside them, in turn until neither moves.
     fn even(self, first: About, progress: &mut dyn FnMut(f64)) -> About {
-        let mut now = first.clone();
-        let mut moved_before = f64::INFINITY;
-        for round in 0..ROUNDS {
-            let next = now.next(self.cuts, 0.0);
-            let moved = next.moved(&now.beside);
-            if moved < LEAST_MM {
-                break;
-            }
-            // What does not settle explains nothing: points of another part, or of another datum.
-            if moved > moved_before {
-                return first;
-            }
-            moved_before = moved;
-            now = self.about(next, None, &mut |share| progress((f64::from(round) + share) / f64::from(ROUNDS)));
-        }
-        now
+        let (now, settled) = self.in_turn(first.clone(), 0.0, progress);
+        // What does not settle explains nothing: points of another part, or of another datum.
+        if settled { now } else { first }
     }
 
-    /// The same about the stock that is expected.
+    /// The same about the stock that is expected, which comes by at most such a share of the allowance a time.
     fn stocked(self, first: About, progress: &mut dyn FnMut(f64)) -> About {
+        self.in_turn(first, MOST_STEP, progress).0
+    }
+
+    /// What is beside machine and material, and both, in turn; and whether they came to rest, or half of the way at least.
+    fn in_turn(self, first: About, stock_step: f64, progress: &mut dyn FnMut(f64)) -> (About, bool) {
         let mut now = first;
-        let (mut moved_before, mut step) = (f64::INFINITY, 1.0);
-        for round in 0..STOCKED_ROUNDS {
-            let mut next = now.next(self.cuts, MOST_STEP);
+        let (mut moved_first, mut moved_before, mut step) = (f64::INFINITY, f64::INFINITY, 1.0);
+        for round in 0..ROUNDS {
+            let mut next = now.next(self.cuts, stock_step);
             let moved = next.moved(&now.beside);
             if moved < LEAST_MM {
-                break;
+                return (now, true);
+            }
+            if round == 0 {
+                moved_first = moved;
             }
             // It goes to and fro: less than the whole way.
             if moved > 0.7 * moved_before {
@@ -212,10 +204,10 @@ impl Task<'_, '_> {
             moved_before = moved;
             next.come(&now.beside, step);
             let kernels = now.discrepancy.take().filter(|_| round + 1 >= FREE);
-            let share = |share: f64| (f64::from(round) + share) / f64::from(STOCKED_ROUNDS);
+            let share = |share: f64| (f64::from(round) + share) / f64::from(ROUNDS);
             now = self.about(next, kernels.as_ref(), &mut |done| progress(share(done)));
         }
-        now
+        (now, moved_before < 0.5 * moved_first)
     }
 
     /// Machine and material from the points relieved of what is beside them, and the discrepancy about both.
