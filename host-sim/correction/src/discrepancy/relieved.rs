@@ -179,12 +179,13 @@ impl Task<'_, '_> {
         if settled { now } else { first }
     }
 
-    /// The same about the stock that is expected, which comes by at most such a share of the allowance a time.
+    /// The same about the stock that is expected.
     fn stocked(self, first: About, progress: &mut dyn FnMut(f64)) -> About {
         self.in_turn(first, MOST_STEP, progress).0
     }
 
-    /// What is beside machine and material, and both, in turn; and whether they came to rest, or half of the way at least.
+    /// What is beside machine and material, and both, in turn; stock comes by at most `stock_step` of the allowance a time. And whether they
+    /// came to rest, or half of the way at least.
     fn in_turn(self, first: About, stock_step: f64, progress: &mut dyn FnMut(f64)) -> (About, bool) {
         let mut now = first;
         let (mut moved_first, mut moved_before, mut step) = (f64::INFINITY, f64::INFINITY, 1.0);
