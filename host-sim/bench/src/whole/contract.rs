@@ -27,6 +27,8 @@ pub(super) struct Contract {
     settings: DeviceSettings,
     /// Settings that were asked for, without the flash having said that it has them.
     unsure: Vec<DeviceSettings>,
+    /// After a reset, until it has told its settings: any of those that are unsure may count.
+    unsettled: bool,
     /// The flash has failed since the last reset, or it swaps programs: what is remembered may be either.
     shaken: bool,
 }
@@ -52,6 +54,7 @@ impl Contract {
             newest: [0; 2],
             settings: DeviceSettings::at_1_khz(),
             unsure: vec![],
+            unsettled: false,
             shaken: false,
         }
     }
@@ -107,7 +110,8 @@ impl Contract {
                 self.unsure.clear();
             }
             (Ask::Settings, Reply::Settings(found)) => {
-                keep(*found == self.settings, Promise::Settings, || format!("{found:?} and not {:?}", self.settings))?
+                let may = *found == self.settings || self.unsettled && self.unsure.contains(found);
+                keep(may, Promise::Settings, || format!("{found:?} and not {:?}", self.settings))?;
             }
             (Ask::Provision(_) | Ask::ProvisionAs { .. } | Ask::ProvisionFirmware { .. }, _) => {
                 self.closed = true;
@@ -213,9 +217,9 @@ impl Contract {
         Ok(())
     }
 
-    /// After a reset: the settings that are told.
-    pub fn reset(&mut self) {
-        self.session = None;
+    /// A reset; what it tells of its settings goes to [`Contract::settled`].
+    pub const fn reset(&mut self) {
+        (self.session, self.unsettled) = (None, true);
     }
     /// Which settings count from a reset on, by what it tells; says whether they are others than before.
     pub fn settled(&mut self, found: &DeviceSettings) -> bool {
@@ -224,6 +228,7 @@ impl Contract {
             self.settings = *found;
         }
         self.unsure.clear();
+        self.unsettled = false;
         other
     }
     /// What the last reset could leave either way is known.

@@ -7,7 +7,7 @@ use truepath_bench::whole::{Breach, Broken, Promise, Stand, Whole, WholeDevice};
 use truepath_core::rewrite::Reason;
 
 use crate::doubles::{Mistake, mistaken, whole_double};
-use crate::whole_seeds::seeds;
+use crate::whole_seeds::{Script, Start, seeds};
 
 fn sound<'a>(device: WholeDevice, _: &'a Setup) -> Box<dyn Whole + 'a> {
     Box::new(device)
@@ -121,6 +121,18 @@ fn a_device_keeps_every_rule_and_promise_on_changed_seeds() {
         found.extend(stand.run(&bytes, &sound).err().map(|breach| format!("{number}: {breach}: {bytes:?}")));
     }
     assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+#[test]
+fn power_may_fail_anywhere_in_a_change_of_settings() {
+    let mut stand = Stand::new();
+    let script = |moment, after| Script::at(Start::Ready).cut(moment, after).ask(9, &[2, 7]).reset(0).awake();
+    for (moment, after) in (0..3).flat_map(|moment| (0..40).map(move |after| (moment, after))) {
+        let told = script(moment, after).ask(9, &[2, 8]).reset(0).ask(9, &[2, 9]).reset(0);
+        if let Err(breach) = stand.run(&told.0, &sound) {
+            panic!("moment {moment}, operation {after}: {breach}");
+        }
+    }
 }
 
 #[test]

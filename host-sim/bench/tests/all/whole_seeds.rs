@@ -3,7 +3,7 @@
 
 /// Where an input begins: the order is that of the stand.
 #[derive(Clone, Copy)]
-enum Start {
+pub enum Start {
     Ready,
     Closed,
     Limited,
@@ -17,11 +17,11 @@ const ON: u8 = 1;
 const HELD: u8 = 3;
 
 /// The bytes of an input, step by step.
-struct Script(Vec<u8>);
+pub struct Script(pub Vec<u8>);
 
 impl Script {
     /// With somebody at the device.
-    fn at(start: Start) -> Self {
+    pub fn at(start: Start) -> Self {
         Self(vec![(start as u8) << 1])
     }
     fn step(mut self, bytes: &[u8]) -> Self {
@@ -32,7 +32,7 @@ impl Script {
         self.step(&word.to_le_bytes())
     }
     /// A request of a kind, with the bytes of its arguments.
-    fn ask(self, kind: u8, arguments: &[u8]) -> Self {
+    pub fn ask(self, kind: u8, arguments: &[u8]) -> Self {
         self.step(&[11, kind]).step(arguments)
     }
     /// To a place, µm from the start of the path, in so many ticks.
@@ -56,11 +56,11 @@ impl Script {
     fn wait(self, ms: u8) -> Self {
         self.step(&[13]).word(i16::from(ms) * 1_000).step(&[0])
     }
-    fn reset(self, cause: u8) -> Self {
+    pub fn reset(self, cause: u8) -> Self {
         self.step(&[14, cause])
     }
     /// The power fails after so many operations of the flash.
-    fn cut(self, moment: u8, after: u8) -> Self {
+    pub fn cut(self, moment: u8, after: u8) -> Self {
         let within: &[u8] = if moment == 1 { &[7, 0] } else { &[] };
         self.step(&[15, moment]).step(within).step(&[after])
     }
@@ -74,7 +74,7 @@ impl Script {
     }
 
     /// Out of `Off`, drives enabled, the pace known.
-    fn awake(self) -> Self {
+    pub fn awake(self) -> Self {
         self.pace(10, 0).flags(OFF).stay(40).ask(2, &[]).flags(ON).stay(40)
     }
     /// A part armed over the start, and down into the pass.
