@@ -31,7 +31,7 @@ impl<'a, F: NorFlash> Handler<'a, F> {
         let before = self.active;
         let settings = self.settings().rewriter;
         let done = self.load(wanted, &settings, servo).and_then(|counted| {
-            if self.ledger.now().active != Some(wanted) {
+            if self.ledger.now().active != Some(wanted) || self.ledger.is_in_doubt() {
                 let (counter, key) = counted.map_or((0, None), |(counted, key)| (counted.counter, Some(key)));
                 self.note(LogEntry { value: wanted.crc, counter, key, ..self.entry(Change::Activated) })?;
             }

@@ -84,7 +84,7 @@ impl<'a, F: NorFlash> Handler<'a, F> {
     }
 
     fn keep_settings(&mut self, settings: DeviceSettings) -> Result<(), Denial> {
-        if self.ledger.now().settings != Some(settings) {
+        if self.ledger.now().settings != Some(settings) || self.ledger.is_in_doubt() {
             let mut bytes = [0; SETTINGS_BYTES];
             let value = postcard::to_slice(&settings, &mut bytes).map_or(0, |bytes| crc32(bytes));
             self.note(LogEntry { value, ..self.entry(Change::Configured) })?;

@@ -62,6 +62,8 @@ impl Remembered {
 pub struct Ledger {
     journal: Journal,
     now: Remembered,
+    /// The flash failed under the last record: it may be there all the same, and count after a reset.
+    in_doubt: bool,
     keys: KeyRing,
     log: Log,
 }
@@ -84,16 +86,21 @@ impl Ledger {
         let mut now = length.map(|length| read(&payload[..length])).unwrap_or_default();
         now.settings = now.settings.filter(|settings| settings.check().is_ok());
         let log = Log::behind(journal.logged(flash).last());
-        Self { journal, now, keys: keys::read(flash), log }
+        Self { journal, now, in_doubt: false, keys: keys::read(flash), log }
     }
     /// What is remembered.
     pub const fn now(&self) -> &Remembered {
         &self.now
     }
+    /// Whether a change that failed may count after the next reset, until something is written again.
+    pub const fn is_in_doubt(&self) -> bool {
+        self.in_doubt
+    }
     /// Remembers something else. Takes up to 32 programmed words; once in [`PLACES`] changes a sector is erased first.
     ///
     /// # Errors
-    /// The flash did not take it: what was remembered before is still remembered.
+    /// The flash did not take it, or did not say so: what was remembered before is still remembered, and this may be after the next
+    /// reset.
     pub fn change<F: NorFlash>(
         &mut self,
         flash: &mut F,
@@ -102,7 +109,7 @@ impl Ledger {
         let mut next = self.now;
         change(&mut next);
         if next == self.now {
-            return Ok(());
+            return self.settle(flash);
         }
         self.append(flash, &next)?;
         self.now = next;
@@ -111,7 +118,15 @@ impl Ledger {
     fn append<F: NorFlash>(&mut self, flash: &mut F, next: &Remembered) -> Result<(), JournalFailed> {
         let mut payload = [0; PAYLOAD_BYTES];
         let bytes = postcard::to_slice(next, &mut payload).map_err(|_| JournalFailed)?;
-        self.journal.append(flash, bytes, &self.keys)
+        let appended = self.journal.append(flash, bytes, &self.keys);
+        self.in_doubt = appended.is_err();
+        appended
+    }
+    /// Writes what is remembered behind a record that failed, so that it is this that counts after a reset, in the sector in which
+    /// what is written beside it will be looked for.
+    fn settle<F: NorFlash>(&mut self, flash: &mut F) -> Result<(), JournalFailed> {
+        let now = self.now;
+        if self.in_doubt { self.append(flash, &now) } else { Ok(()) }
     }
 
     /// The keys whose images are taken; none while every image is.
@@ -131,7 +146,7 @@ impl Ledger {
     ) -> Result<(), NotProvisioned> {
         let before = self.keys;
         self.keys.add_with(key, rights).map_err(NotProvisioned::Ring)?;
-        let written = self.keys == before || self.journal.write_key(flash, &key, rights);
+        let written = self.keys == before || self.settle(flash).is_ok() && self.journal.write_key(flash, &key, rights);
         self.keep_keys(flash, written, before)
     }
     /// Trusts a key no more, for ever. Takes one programmed word.
@@ -148,7 +163,7 @@ impl Ledger {
             return Err(NotProvisioned::Ring(KeyRingError::Key(SignatureError::UnknownKey { key })));
         }
         self.keys.revoke(key).map_err(NotProvisioned::Ring)?;
-        let written = self.journal.write_revoked(flash, key);
+        let written = self.settle(flash).is_ok() && self.journal.write_revoked(flash, key);
         self.keep_keys(flash, written, before)
     }
     /// What was not written into the page of keys, because it is worn or used up, goes with a record to the other sector.
@@ -202,7 +217,7 @@ impl Ledger {
     /// The flash did not take it.
     #[inline(never)]
     pub fn raise<F: NorFlash>(&mut self, flash: &mut F, to: &Counted) -> Result<(), JournalFailed> {
-        if self.journal.raise(flash, to) {
+        if self.settle(flash).is_ok() && self.journal.raise(flash, to) {
             return Ok(());
         }
         // The page is used up: what still counts goes to the other sector, and leaves room there.
@@ -235,6 +250,9 @@ impl Ledger {
     /// # Errors
     /// The flash did not take one: it and those behind it still wait.
     pub fn write_waiting<F: NorFlash>(&mut self, flash: &mut F) -> Result<(), JournalFailed> {
+        if self.has_waiting() {
+            self.settle(flash)?;
+        }
         while let Some(entry) = self.log.waiting.front().copied() {
             if !self.journal.log(flash, &entry) {
                 // The page is used up: the newest go to the other sector, and leave room there.

@@ -2,10 +2,13 @@
 
 use embedded_storage::nor_flash::NorFlash;
 use truepath_core::checksum::crc32;
-use truepath_core::link::{ActiveImage, DeviceSettings};
+use truepath_core::image::{Counted, Rights};
+use truepath_core::link::{ActiveImage, Change, DeviceSettings, LogEntry};
 use truepath_core::rewrite::Spent;
 use truepath_fw::flash::{BANK_BYTES, BANK_WORDS, Cut, LEDGER_SECTORS, Moment, Nor, SECTOR_BYTES, WordState};
 use truepath_fw::ledger::{Ledger, PLACES, Remembered};
+
+use crate::wire_support::{owner, public};
 
 fn erased() -> Nor<'static> {
     Nor::erased(vec![0; BANK_BYTES].leak(), vec![WordState::Blank; BANK_WORDS].leak())
@@ -195,6 +198,92 @@ fn a_change_that_changes_nothing_costs_nothing() {
     let before = nor.wear();
     ledger.change(&mut nor, |now| now.boots = 1).unwrap();
     assert_eq!(nor.wear(), before);
+}
+
+/// Ledgers whose last change failed, at each operation and moment of it, with their flash under power again: from one with a key and so
+/// many records before.
+fn failed_anywhere(records: u32) -> impl Iterator<Item = (String, Nor<'static>, Ledger)> {
+    let moments = [Moment::Before, Moment::Within(5), Moment::After];
+    (0..20).flat_map(move |after_operations| moments.map(|moment| Cut { after_operations, moment })).filter_map(
+        move |cut| {
+            let mut nor = erased();
+            let mut ledger = Ledger::open(&mut nor);
+            for boots in 1..=records {
+                ledger.change(&mut nor, |now| now.boots = boots).unwrap();
+            }
+            ledger.provision(&mut nor, public(&owner(1)), Rights::default()).unwrap();
+            nor.cut(Some(cut));
+            ledger.change(&mut nor, |now| now.boots = 0).err()?;
+            nor.power_up();
+            Some((format!("{cut:?} of {records}"), nor, ledger))
+        },
+    )
+}
+
+#[test]
+fn what_is_remembered_counts_again_as_soon_as_it_is_changed_back_behind_a_change_that_failed() {
+    let mut in_flash = 0;
+    for (cut, mut nor, mut ledger) in [1, PLACES as u32].into_iter().flat_map(failed_anywhere) {
+        let boots = ledger.now().boots;
+        assert!(boots > 0 && ledger.is_in_doubt(), "{cut}");
+        in_flash += usize::from(Ledger::open(&mut nor).now().boots == 0);
+        ledger.change(&mut nor, |now| now.boots = boots).unwrap();
+        assert!(!ledger.is_in_doubt(), "{cut}");
+        assert_eq!(Ledger::open(&mut nor).now().boots, boots, "{cut}");
+    }
+    assert_eq!(in_flash, 2, "the last word was written, and nobody heard of it");
+}
+
+#[test]
+fn what_is_written_beside_the_records_behind_a_change_that_failed_is_found_again() {
+    let ([key, new], image) =
+        ([1, 2].map(|seed| public(&owner(seed))), Counted { program_crc: 1, feature: 2, pass: 3, counter: 4 });
+    let entry = LogEntry {
+        sequence: 0,
+        boots: 7,
+        uptime_us: 0,
+        host_s: None,
+        by: None,
+        change: Change::Restarted,
+        key: None,
+        value: 9,
+        refused: 0,
+        counter: 0,
+    };
+    let ledgers = || [1, PLACES as u32].into_iter().flat_map(failed_anywhere);
+    // Until a sector has been erased, and the power failed behind that.
+    let through_an_erase = |nor: &mut Nor<'_>| {
+        let before = nor.wear().erased_sectors;
+        while nor.wear().erased_sectors == before {
+            nor.cut(Some(Cut { after_operations: 1, moment: Moment::Before }));
+            let mut ledger = Ledger::open(nor);
+            ledger.change(nor, |now| now.boots += 1).unwrap_err();
+            nor.power_up();
+        }
+        Ledger::open(nor)
+    };
+    for (cut, mut nor, mut ledger) in ledgers() {
+        ledger.provision(&mut nor, new, Rights::default()).unwrap();
+        assert!(Ledger::open(&mut nor).keys().iter().eq([&key, &new]), "{cut}");
+        assert!(through_an_erase(&mut nor).keys().iter().eq([&key, &new]), "{cut}");
+    }
+    for (cut, mut nor, mut ledger) in ledgers() {
+        ledger.revoke(&mut nor, key.id()).unwrap();
+        assert!(Ledger::open(&mut nor).keys().is_revoked(key.id()), "{cut}");
+        assert!(through_an_erase(&mut nor).keys().is_revoked(key.id()), "{cut}");
+    }
+    for (cut, mut nor, mut ledger) in ledgers() {
+        ledger.raise(&mut nor, &image).unwrap();
+        assert_eq!(Ledger::open(&mut nor).least(&mut nor, &image), 4, "{cut}");
+        assert_eq!(through_an_erase(&mut nor).least(&mut nor, &image), 4, "{cut}");
+    }
+    for (cut, mut nor, mut ledger) in ledgers() {
+        ledger.note(&mut nor, entry).unwrap();
+        let found = Ledger::open(&mut nor);
+        assert_eq!(found.logged(&mut nor).last().map(|entry| entry.value), Some(9), "{cut}");
+        let found = through_an_erase(&mut nor);
+        assert_eq!(found.logged(&mut nor).last().map(|entry| entry.value), Some(9), "{cut}");
+    }
 }
 
 #[test]

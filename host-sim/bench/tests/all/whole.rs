@@ -126,11 +126,14 @@ fn a_device_keeps_every_rule_and_promise_on_changed_seeds() {
 #[test]
 fn power_may_fail_anywhere_in_a_change_of_settings() {
     let mut stand = Stand::new();
-    let script = |moment, after| Script::at(Start::Ready).cut(moment, after).ask(9, &[2, 7]).reset(0).awake();
     for (moment, after) in (0..3).flat_map(|moment| (0..40).map(move |after| (moment, after))) {
-        let told = script(moment, after).ask(9, &[2, 8]).reset(0).ask(9, &[2, 9]).reset(0);
-        if let Err(breach) = stand.run(&told.0, &sound) {
-            panic!("moment {moment}, operation {after}: {breach}");
+        // Before the reset another change, or one back to the settings that are still in force.
+        for lost_frames in [8, 5] {
+            let cut = Script::at(Start::Ready).cut(moment, after).ask(9, &[2, 7]).ask(9, &[2, lost_frames]).reset(0);
+            let told = cut.awake().ask(9, &[2, 8]).reset(0).ask(9, &[2, 9]).reset(0);
+            if let Err(breach) = stand.run(&told.0, &sound) {
+                panic!("moment {moment}, operation {after}, {lost_frames} lost frames: {breach}");
+            }
         }
     }
 }
