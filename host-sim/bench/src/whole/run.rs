@@ -368,7 +368,7 @@ impl<'r> Run<'r> {
         let (done, sync) = match &request {
             Ok((request, session)) => {
                 keep(id == request.id, Promise::Answered, || format!("{id} answers {}", request.id))?;
-                if !again {
+                if !(again && holds(&request.ask, was)) {
                     self.contract.answered(self.things, &(*request, *session), &answer, self.now_us)?;
                     self.judge(&request.ask, answer.is_ok(), was)?;
                 }
@@ -504,6 +504,15 @@ const fn changes_image(ask: &Ask<'_>, item: Item) -> bool {
                 | Ask::ProvisionFirmware { .. }
                 | Ask::Revoke(_)
         )
+}
+
+/// Whether what was answered to the same bytes before is still so in a mode: else they are a request of their own.
+const fn holds(ask: &Ask<'_>, mode: Mode) -> bool {
+    match ask {
+        Ask::AcknowledgeDrivesDisabled => matches!(mode, Mode::Bypass),
+        Ask::Arm(_) => matches!(mode, Mode::Armed),
+        _ => true,
+    }
 }
 
 /// A frame: the program's own, shifted, with other axes, or mirrored.

@@ -139,6 +139,12 @@ fn power_may_fail_anywhere_in_a_change_of_settings() {
 }
 
 #[test]
+fn an_acknowledgement_that_comes_again_once_it_is_off_is_one_of_its_own() {
+    let again = Script::at(Start::Ready).pace(10, 0).stay(40).ask(2, &[]).wait(30).stay(40).step(&[16]).stay(5);
+    Stand::new().run(&again.0, &sound).unwrap();
+}
+
+#[test]
 fn an_input_does_the_same_again_whatever_came_between() {
     let (seeds, mut stand) = (seeds(), Stand::new());
     let mut told = |name: &str| {

@@ -24,7 +24,7 @@ impl Script {
     pub fn at(start: Start) -> Self {
         Self(vec![(start as u8) << 1])
     }
-    fn step(mut self, bytes: &[u8]) -> Self {
+    pub fn step(mut self, bytes: &[u8]) -> Self {
         self.0.extend_from_slice(bytes);
         self
     }
@@ -39,21 +39,21 @@ impl Script {
     fn go(self, x: i16, y: i8, z: i16, ticks: u8) -> Self {
         self.step(&[3]).word(x).step(&[y as u8]).word(z).step(&[ticks - 1])
     }
-    fn stay(self, ticks: u8) -> Self {
+    pub fn stay(self, ticks: u8) -> Self {
         self.step(&[4, ticks - 1])
     }
     fn flags(self, flags: u8) -> Self {
         self.step(&[5, flags])
     }
     /// Time between setpoints, 0.1 ms, and from one to its answer, 16 µs.
-    fn pace(self, gap: u8, delay: u8) -> Self {
+    pub fn pace(self, gap: u8, delay: u8) -> Self {
         self.step(&[6, gap, delay])
     }
     fn skip(self, setpoints: i16) -> Self {
         self.step(&[7]).word(setpoints)
     }
     /// Milliseconds, at most 32.
-    fn wait(self, ms: u8) -> Self {
+    pub fn wait(self, ms: u8) -> Self {
         self.step(&[13]).word(i16::from(ms) * 1_000).step(&[0])
     }
     pub fn reset(self, cause: u8) -> Self {
