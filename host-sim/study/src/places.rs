@@ -3,7 +3,7 @@
 
 use truepath_correction::further::next_part;
 use truepath_correction::learning::History;
-use truepath_correction::verification::{Settings, plan};
+use truepath_correction::verification::{Settings, ball_with_room, plan};
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::rows::ascending;
 use truepath_ground::units::float;
@@ -75,8 +75,13 @@ pub fn chosen_with_ball(
     advised: bool,
     with_ball: impl FnOnce(f64) -> Result<Pass, Failure>,
 ) -> Result<(Pass, Option<f64>, Chosen), Failure> {
-    let chosen = chosen(&pass)?;
-    let Some(smaller) = chosen.smaller_ball_mm.filter(|_| advised) else { return Ok((pass, None, chosen)) };
+    let chosen = chosen(&pass);
+    let smaller = match &chosen {
+        _ if !advised => None,
+        Ok(chosen) => chosen.smaller_ball_mm,
+        Err(_) => ball_with_room(&pass, &Settings::default()),
+    };
+    let Some(smaller) = smaller else { return Ok((pass, None, chosen?)) };
     let pass = with_ball(smaller)?;
     let chosen = self::chosen(&pass)?;
     Ok((pass, Some(smaller), chosen))

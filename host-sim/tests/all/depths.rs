@@ -46,4 +46,5 @@ fn one_shallow_pass_alone_has_no_room_for_the_ball() {
     let desk = workplace(1);
     let said = desk.run("probe job.toml --dialect linuxcnc -o verify.nc").expect_err("no room");
     assert!(said.contains("V002"), "{said}");
+    assert!(!said.contains("as one of"), "no ball has: {said}");
 }

@@ -1,9 +1,13 @@
 //! Places of the contour that may be touched, and why the others may not.
 //!
 //! A place is kept off when its wall is not final (the rest of the path cuts it away, as at outside
-//! corners), near the ends of the contour and on its leads (plunge and lift leave marks there), near a sharp inside corner, where engagement or
-//! deflection changes abruptly (there a shift of a tenth of a millimetre along the wall would look like an error of the
-//! machine), and where the ball's way is not proved free.
+//! corners), near the ends of the contour and on its leads (plunge and lift leave marks there), near a sharp inside corner, and
+//! where the ball's way is not proved free.
+//!
+//! Where engagement or deflection changes abruptly, a shift of a tenth of a millimetre along the wall would look like an error of the
+//! machine. In a tight corner the load is nowhere steady, though, and only there is it high. So such a place is taken to be less certain,
+//! by what the wall changes within that tenth, and kept off only beside a steady one of the same load
+//! ([`without_ramps`](super::sensitivity::without_ramps)).
 
 use std::collections::HashMap;
 use std::ops::RangeInclusive;
@@ -28,7 +32,7 @@ pub enum KeptOff {
     NoWall,
     /// Near a sharp inside corner.
     SharpCorner,
-    /// Engagement or deflection changes abruptly.
+    /// Engagement or deflection changes abruptly, on the way to or from a steady place of the same load.
     Unsteady,
     /// The way of the ball is not proved free.
     Unproved,
@@ -41,7 +45,7 @@ impl KeptOff {
             Self::End => "near an end of the contour or on its leads, where the cutter plunges, lifts or passes twice",
             Self::NoWall => "without a final wall: the rest of the path cuts it away",
             Self::SharpCorner => "near a sharp inside corner",
-            Self::Unsteady => "where the engagement changes abruptly",
+            Self::Unsteady => "where the engagement changes abruptly, beside a steady place of the same load",
             Self::Unproved => "where the way of the ball is not proved free",
         }
     }
@@ -84,13 +88,13 @@ const ABRUPT_SHARE: f64 = 0.04;
 /// coordinates and facets make.
 const CUT_AWAY: f64 = 0.02;
 
-/// Sorts the places of a pass. `unsteady` ones are kept off, or taken with what they are worth.
+/// Sorts the places of a pass, for a noise of the readings, mm.
 pub(super) fn candidates(
     pass: &Pass,
     path: &Path,
     estimate: &Estimate,
     ball: Ball,
-    (noise, unsteady): (f64, bool),
+    noise: f64,
 ) -> (Vec<Site>, Vec<KeptOff>) {
     let samples = &path.samples()[path.first()..path.first() + path.count()];
     let radius = mm(path.setup().radius);
@@ -115,9 +119,6 @@ pub(super) fn candidates(
         let turn = float(state(after).engaged - state(before).engaged).abs().to_degrees();
         let change = (deflection(after) - deflection(before)).abs();
         let is_unsteady = turn > ABRUPT_DEG || change > abrupt;
-        if is_unsteady && !unsteady {
-            return Err(KeptOff::Unsteady);
-        }
         if !ball.is_free(wall, normal, &standing) {
             return Err(KeptOff::Unproved);
         }

@@ -11,7 +11,8 @@
 //! wall of several passes that are cut alike, each at another height above the tip that cut it there.
 
 use truepath_core::job::{Probe, ZReference};
-use truepath_ground::diagnostics::Failure;
+use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::length::Unit;
 use truepath_ground::units::{float, mm};
 use truepath_job::levels;
 use truepath_job::pass::Pass;
@@ -36,6 +37,19 @@ pub struct Height {
 /// From the ball's centre to the upper end of the engaged depth, at least: above it stands what an earlier pass left, or
 /// the edge with its burr. The larger of millimetres and a share of the depth.
 const BELOW_TOP: (f64, f64) = (1.0, 0.1);
+
+/// Diameters of balls that probes are sold with, mm, from the largest down.
+const BALLS_MM: [f64; 7] = [6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0];
+/// Touches over less than the last share of the height of a wall leave the rest of it to the model; a ball that reaches the first is
+/// looked for, then one that reaches the last (`truepath study --touches advised`; docs/study.md has what it is worth).
+const REACHED: [f64; 2] = [0.6, 0.4];
+
+/// The largest smaller ball that would touch enough of the height of a wall, mm. `spread` is what a ball would touch, mm.
+pub(super) fn smaller_ball(ball_mm: f64, depth_mm: f64, spread: impl Fn(f64) -> f64) -> Option<f64> {
+    let smaller = || BALLS_MM.into_iter().filter(move |ball| *ball < ball_mm);
+    let reaches = |share: f64| smaller().find(|ball| spread(*ball) >= share * depth_mm);
+    if spread(ball_mm) >= REACHED[1] * depth_mm { None } else { REACHED.into_iter().find_map(reaches) }
+}
 
 /// Between two heights, at least, mm.
 const APART: f64 = 0.5;
@@ -75,6 +89,52 @@ fn over_several(tips: &[f64], depth: f64, (lowest, below_top): (f64, f64), count
     found
 }
 
+/// The room of a ball on a wall, mm.
+#[derive(Clone, Copy, Debug)]
+struct Room {
+    depth: f64,
+    /// Of the ball's lowest point above the tip of the cutter, at least.
+    lowest: f64,
+    /// Of its centre below the upper end, at least.
+    below_top: f64,
+}
+
+impl Room {
+    /// Of a wall of a depth.
+    fn of(pass: &Pass, settings: &Settings) -> Self {
+        let depth = float(pass.core.setup.axial_depth);
+        Self { depth, lowest: settings.floor_clearance, below_top: BELOW_TOP.0.max(BELOW_TOP.1 * depth) }
+    }
+    /// What a ball can touch, mm; below zero nothing.
+    fn spread(self, ball_mm: f64) -> f64 {
+        self.depth - self.below_top - self.lowest - ball_mm / 2.0
+    }
+    /// The ball to take where one has no room, mm: one that touches enough of the wall, or two heights of it, or any.
+    fn ball(self, ball_mm: f64) -> Option<f64> {
+        let with = |spread: f64| BALLS_MM.into_iter().find(|ball| *ball < ball_mm && self.spread(*ball) >= spread);
+        smaller_ball(ball_mm, self.depth, |ball| self.spread(ball)).or_else(|| with(APART)).or_else(|| with(0.0))
+    }
+}
+
+/// The ball that has room on the wall of a pass where that of the job has none (`V002`), mm; `None` where it has, or no ball has.
+pub fn ball_with_room(pass: &Pass, settings: &Settings) -> Option<f64> {
+    let (room, ball_mm) = (Room::of(pass, settings), mm(pass.job.require_probe().ok()?.ball_diameter));
+    if room.spread(ball_mm) < 0.0 { room.ball(ball_mm) } else { None }
+}
+
+fn no_room(room: Room, ball_mm: f64, unit: Unit) -> InputError {
+    let name = unit.name();
+    let [ball, depth, floor, top] = [ball_mm, room.depth, room.lowest, room.below_top].map(|mm| unit.of(mm));
+    let has_room =
+        room.ball(ball_mm).map_or_else(String::new, |other| format!(", as one of {} {name} has", unit.of(other)));
+    V002.error(
+        format!("a ball of {ball} {name} has no room in an engaged depth of {depth} {name}"),
+        format!(
+            "its radius + {floor} {name} above the floor + {top} {name} below the upper end within the depth{has_room}"
+        ),
+    )
+}
+
 /// Whether every height of the wall of a pass counts: a tolerance was stated, or one instant of a tooth makes more than one height.
 fn asks_for_profile(pass: &Pass, settings: &Settings) -> bool {
     let setup = &pass.core.setup;
@@ -94,11 +154,11 @@ pub(super) fn heights(
     settings: &Settings,
 ) -> Result<(Vec<Height>, Option<String>), Failure> {
     let wanted = settings.heights.unwrap_or(USUAL_HEIGHTS);
-    let depth = float(pass.core.setup.axial_depth);
+    let room = Room::of(pass, settings);
+    let (depth, below_top) = (room.depth, room.below_top);
     let radius = mm(probe.ball_diameter) / 2.0;
     let tip_z = pass.core.contour.z.nm() as f64 / 1e6;
-    let below_top = BELOW_TOP.0.max(BELOW_TOP.1 * depth);
-    let (lowest, highest) = (radius + settings.floor_clearance, depth - below_top);
+    let (lowest, highest) = (radius + room.lowest, depth - below_top);
     let lift = match probe.z_reference {
         ZReference::Centre => 0.0,
         ZReference::Tip => radius,
@@ -114,17 +174,7 @@ pub(super) fn heights(
             };
             return Ok((over_several.iter().enumerate().map(height).collect(), None));
         }
-        let (unit, name) = (pass.unit(), pass.unit().name());
-        let [ball, depth, floor, top] =
-            [2.0 * radius, depth, settings.floor_clearance, below_top].map(|mm| unit.of(mm));
-        return Err(V002
-            .error(
-                format!("a ball of {ball} {name} has no room in an engaged depth of {depth} {name}"),
-                format!(
-                    "its radius + {floor} {name} above the floor + {top} {name} below the upper end within the depth"
-                ),
-            )
-            .into());
+        return Err(no_room(room, 2.0 * radius, pass.unit()).into());
     }
     if wanted > 1 && asks_for_profile(pass, settings) {
         let count = settings.heights.map(|count| count as usize);

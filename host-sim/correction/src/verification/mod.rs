@@ -55,7 +55,7 @@ pub use candidates::KeptOff;
 pub use dialect::{ProbeDialect, write};
 pub use dimension_text::{sheet, table};
 pub use dimensions::{DimensionPlan, DimensionSettings, PlannedDimension, USUAL_DIMENSIONS, plan_dimensions};
-pub use heights::Height;
+pub use heights::{Height, ball_with_room};
 pub use next::{Measured, plan_next};
 pub use part_program::PartProgram;
 pub use plan::{Gained, Place, Plan, Touch, plan, plan_every};

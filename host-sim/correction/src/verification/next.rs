@@ -4,9 +4,6 @@
 //! at hand, with the sensitivities at its parameters, and asks for the corrected wall: by how much does its standard
 //! deviation at the worst place fall? Touched is the part that was measured, or the next one, which is cut with a
 //! correction and has a datum of its own.
-//!
-//! In a tight corner the load is nowhere steady, and only there is it high. So here such places are not kept off: a touch
-//! at one is taken to be less certain, by what the wall changes within a tenth of a millimetre.
 
 use truepath_core::correct::Node;
 use truepath_core::cut::Path;
@@ -17,14 +14,12 @@ use truepath_ground::units::{float, mm};
 use truepath_job::pass::Pass;
 
 use super::approach::{Xy, along};
-use super::candidates::Site;
 use super::choice_next::{Gain, Limits, Task, choose_next, largest};
 use super::covariance::{Covariance, Thing};
 use super::estimate::Estimate;
 use super::plan::{Gained, Place, Plan};
-use super::probing_setup::ProbingSetup;
+use super::probing_setup::{ProbingSetup, Touchable};
 use super::reason;
-use super::sensitivity::{Sensitivity, sensitivities};
 use super::settings::Settings;
 use super::wall_sensitivity::WallSensitivity;
 use crate::correction::Identification;
@@ -63,9 +58,7 @@ pub fn plan_next(
     let (path, identified) = (measured.path, measured.identified);
     let (prior, fit) = (identified.prior(), identified.fit());
     let estimate = Estimate { prior, theta: fit.theta, nodes: measured.nodes };
-    let (sites, kept_off) = setup.sites(pass, path, &estimate, (true, &[]))?;
-    let sensitivities = sensitivities(path, &estimate, &sites, &setup.heights, setup.probe.noise, progress);
-    let (sites, sensitivities) = without_ramps(sites, sensitivities, 2.0 * mm(path.setup().radius));
+    let Touchable { sites, sensitivities, kept_off } = setup.touchable(pass, path, &estimate, &[], progress)?;
     let known = Covariance::of(&fit.covariance, measured.is_next);
     let known = measured.open.map_or(known.clone(), |open| known.beside(open));
     let beside = |s_mm: f64| measured.open.and_then(|open| open.nearest(s_mm));
@@ -104,25 +97,6 @@ pub fn plan_next(
     plan.warnings.extend(pass.unit().remarks(|unit| doubt(&gains, settings, noise, unit)));
     progress(1.0);
     Ok(plan)
-}
-
-/// A place of the same load where it is steady, as a share.
-const ALIKE: f64 = 0.9;
-
-/// Without places where the load changes, if it is as high at a steady one within `near` mm: what is read on the way up tells of that way.
-fn without_ramps(sites: Vec<Site>, sensitivities: Vec<Sensitivity>, near: f64) -> (Vec<Site>, Vec<Sensitivity>) {
-    let load = |of: &Sensitivity| of.wall.iter().map(|row| row[0].abs()).sum::<f64>();
-    let steady: Vec<(f64, f64)> = sites
-        .iter()
-        .zip(&sensitivities)
-        .filter(|(site, _)| site.unsteady == Offset::ZERO)
-        .map(|(site, of)| (mm(site.s), load(of)))
-        .collect();
-    let is_kept = |(site, of): &(Site, Sensitivity)| {
-        let as_high = |(s, other): &(f64, f64)| (s - mm(site.s)).abs() <= near && *other >= ALIKE * load(of);
-        site.unsteady == Offset::ZERO || !steady.iter().any(as_high)
-    };
-    sites.into_iter().zip(sensitivities).filter(is_kept).unzip()
 }
 
 /// Nominal wall at a place along the contour, mm.

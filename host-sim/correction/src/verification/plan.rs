@@ -14,11 +14,11 @@ use super::approach::along;
 use super::candidates::{KeptOff, Site};
 use super::choice::{Choice, choose};
 use super::estimate::Estimate;
-use super::heights::Height;
+use super::heights::{Height, smaller_ball};
 use super::part_program::PartProgram;
-use super::probing_setup::ProbingSetup;
+use super::probing_setup::{ProbingSetup, Touchable};
 use super::reason::{self, Unknown};
-use super::sensitivity::{Sensitivity, sensitivities};
+use super::sensitivity::Sensitivity;
 use super::settings::{Settings, USUAL_HEIGHTS};
 
 /// A place of the wall.
@@ -294,11 +294,11 @@ impl<'a> Wall<'a> {
         let prior = pass.core.prior(path.setup().law);
         let estimate = Estimate::stated(&prior);
         let others: Vec<&Pass> = all.iter().filter(|other| !std::ptr::eq(*other, pass)).collect();
-        let (sites, kept) = setup.sites(pass, &path, &estimate, (false, &others))?;
+        let Touchable { sites, sensitivities, kept_off: kept } =
+            setup.touchable(pass, &path, &estimate, &others, progress)?;
         for (reason, count) in kept {
             *kept_off.entry(reason).or_insert(0) += count;
         }
-        let sensitivities = sensitivities(&path, &estimate, &sites, &setup.heights, setup.probe.noise, progress);
         let length_mm = mm(path.length());
         Ok(Self { pass, setup, sites, sensitivities, length_mm })
     }
@@ -330,12 +330,6 @@ pub(super) fn in_short(failure: &Failure) -> String {
 /// A plan that leaves the wall less certain than this, mm, and than this share of what the job states, is doubted.
 const TELLING: (f64, f64) = (0.005, 0.1);
 
-/// Diameters of balls that probes are sold with, mm, from the largest down.
-const BALLS_MM: [f64; 7] = [6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0];
-/// Touches over less than the first share of the height of a wall leave the rest of it to the model, and a ball that
-/// reaches the second is named (`truepath study --touches advised`; docs/study.md has what it is worth).
-const REACHED: (f64, f64) = (0.4, 0.6);
-
 /// How far up and down a plan touches the walls, and how high they are, mm: the largest of each.
 struct Reach {
     spread_mm: f64,
@@ -359,11 +353,9 @@ impl Reach {
 
     /// The ball that would touch more of the height, where that of the job touches the upper part of the wall only, mm.
     fn smaller_ball(&self, plan: &Plan, law: WallLaw) -> Option<f64> {
-        if law != WallLaw::Helical || plan.most_heights() < 2 || self.spread_mm >= REACHED.0 * self.depth_mm {
-            return None;
-        }
-        let mut smaller = BALLS_MM.into_iter().filter(|ball| *ball < plan.ball_mm);
-        smaller.find(|ball| self.with_ball(plan, *ball) >= REACHED.1 * self.depth_mm)
+        let one_height = plan.settings.heights == Some(1);
+        let spread = |ball: f64| self.with_ball(plan, ball);
+        if law != WallLaw::Helical || one_height { None } else { smaller_ball(plan.ball_mm, self.depth_mm, spread) }
     }
 
     fn words(&self, plan: &Plan, ball_mm: f64, unit: Unit) -> String {

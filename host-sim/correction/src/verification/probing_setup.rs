@@ -15,6 +15,7 @@ use super::candidates::{KeptOff, Site, StockWall, before_the_pass, candidates, c
 use super::estimate::Estimate;
 use super::heights::{Height, heights};
 use super::part_program::PartProgram;
+use super::sensitivity::{Sensitivity, sensitivities, without_ramps};
 use super::settings::Settings;
 use crate::codes::{V001, V003, V004};
 
@@ -27,6 +28,15 @@ pub(super) struct ProbingSetup {
     pub(super) heights_why: Option<String>,
     pub(super) ball: Ball,
     pub(super) safe_z_mm: f64,
+}
+
+/// Places that may be touched.
+pub(super) struct Touchable {
+    pub(super) sites: Vec<Site>,
+    /// What each would tell.
+    pub(super) sensitivities: Vec<Sensitivity>,
+    /// How many may not be touched, by reason.
+    pub(super) kept_off: BTreeMap<KeptOff, usize>,
 }
 
 /// Between two places, at least: the ball's radius and this much more, mm, so that they are two places of the wall.
@@ -69,20 +79,28 @@ impl ProbingSetup {
         Ok(Self { program, probe, heights, heights_why, ball, safe_z_mm })
     }
 
-    /// The places that may be touched, `unsteady` ones too or not, and how many may not, by reason; `others` are the other
-    /// contours of the part.
+    /// The places that may be touched, with what they would tell, and how many may not, by reason; `others` are the other contours of
+    /// the part. `progress` is told the share done, 0…1.
     ///
     /// # Errors
     /// `V004` without any.
-    pub(super) fn sites(
+    pub(super) fn touchable(
         &self,
         pass: &Pass,
         path: &Path,
         estimate: &Estimate,
-        (unsteady, others): (bool, &[&Pass]),
-    ) -> Result<(Vec<Site>, BTreeMap<KeptOff, usize>), InputError> {
-        let all = candidates(pass, path, estimate, self.ball, (mm(self.probe.noise), unsteady));
-        self.beside_others(all, others)
+        others: &[&Pass],
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Touchable, InputError> {
+        let all = candidates(pass, path, estimate, self.ball, mm(self.probe.noise));
+        let (all, mut kept_off) = self.beside_others(all, others)?;
+        let count = all.len();
+        let sensitivities = sensitivities(path, estimate, &all, &self.heights, self.probe.noise, progress);
+        let (sites, sensitivities) = without_ramps(all, sensitivities, 2.0 * mm(path.setup().radius));
+        if sites.len() < count {
+            kept_off.insert(KeptOff::Unsteady, count - sites.len());
+        }
+        Ok(Touchable { sites, sensitivities, kept_off })
     }
 
     /// The places where the stock before the pass may be touched, and how many may not, by reason.

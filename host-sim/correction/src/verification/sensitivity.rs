@@ -63,6 +63,30 @@ pub(super) fn sensitivities(
     rows.chunks(heights.len()).zip(deviations.chunks(heights.len())).map(sensitivity).collect()
 }
 
+/// A place of the same load where it is steady, as a share.
+const ALIKE: f64 = 0.9;
+
+/// Without places where the load changes, if it is as high at a steady one within `near` mm: what is read on the way up tells of
+/// that way.
+pub(super) fn without_ramps(
+    sites: Vec<Site>,
+    sensitivities: Vec<Sensitivity>,
+    near: f64,
+) -> (Vec<Site>, Vec<Sensitivity>) {
+    let load = |of: &Sensitivity| of.wall.iter().map(|row| row[0].abs()).sum::<f64>();
+    let steady: Vec<(f64, f64)> = sites
+        .iter()
+        .zip(&sensitivities)
+        .filter(|(site, _)| site.unsteady == Offset::ZERO)
+        .map(|(site, of)| (mm(site.s), load(of)))
+        .collect();
+    let is_kept = |(site, of): &(Site, Sensitivity)| {
+        let as_high = |(s, other): &(f64, f64)| (s - mm(site.s)).abs() <= near && *other >= ALIKE * load(of);
+        site.unsteady == Offset::ZERO || !steady.iter().any(as_high)
+    };
+    sites.into_iter().zip(sensitivities).filter(is_kept).unzip()
+}
+
 /// The sensitivities of readings, which then hold what is expected of them as their error: change per prior standard
 /// deviation, in standard deviations of the reading. `progress` is told the share done, 0…1.
 pub(super) fn rows(

@@ -82,7 +82,7 @@ fn a_ball_that_does_not_fit_is_refused_with_the_reason() {
     };
     let ball = |d| format!("ball_diameter_mm = {d}");
     let (code, text) = refused(POCKET, &[("ball_diameter_mm = 4.0", &ball("22.0"))], Settings::default());
-    assert_eq!(code, "V002", "{text}");
+    assert_eq!((code.as_str(), text.contains("as one of 6 mm has")), ("V002", true), "{text}");
     // 8 mm ball, 2 mm clearance: 10 mm, which the cutter of 10 mm has just cleared; 3 mm of clearance have not.
     let wide = |clearance| Settings { clearance, ..Settings::default() };
     let (code, text) = refused(POCKET, &[("ball_diameter_mm = 4.0", &ball("8.0"))], wide(3.0));
@@ -94,6 +94,42 @@ fn a_ball_that_does_not_fit_is_refused_with_the_reason() {
     assert!(plan.warnings.iter().any(|w| w.contains("--free-width")));
     let (code, _) = refused(POCKET, &[], Settings { safe_z: Some(-1.0), ..Settings::default() });
     assert_eq!(code, "V001");
+}
+
+#[test]
+fn a_tight_corner_whose_load_is_nowhere_steady_is_touched_all_the_same() {
+    // An arc of 3 mm of the centre of a cutter of 20 mm: 4.7 mm of its path.
+    let tight = [("Y35. F250.", "Y33. F250."), ("G03 X39. Y30. I5.", "G03 X37. Y30. I3.")];
+    let plan = planned(&pass(HELIX, &tight), &Settings::default());
+    let corner: Vec<_> = plan.places.iter().filter(|place| (46.0..53.0).contains(&place.s_mm)).collect();
+    assert!(corner.iter().any(|place| place.what.contains("where the load changes")), "{:?}", plan.places);
+}
+
+#[test]
+fn a_ball_too_large_for_a_shallow_wall_has_a_smaller_one_named() {
+    let wall = |depth: &str, ball: &str| {
+        let depth = format!("axial_depth_mm = {depth}");
+        pass(
+            HELIX,
+            &[("axial_depth_mm = 10.0", &depth), ("ball_diameter_mm = 6.0", &format!("ball_diameter_mm = {ball}"))],
+        )
+    };
+    let named = |depth, ball, heights| {
+        let settings = Settings { heights, ..Settings::default() };
+        let plan = planned(&wall(depth, ball), &settings);
+        let said = plan.warnings.iter().any(|w| w.to_string().contains("the rest of it is the model's word"));
+        assert_eq!(said, plan.smaller_ball_mm.is_some());
+        plan.smaller_ball_mm
+    };
+    // 60 % of the height, or 40 % where none reaches that, also where there is room for one height only.
+    assert_eq!(named("6.0", "6.0", None), Some(1.5));
+    assert_eq!(named("4.5", "6.0", None), Some(2.0));
+    assert_eq!(named("4.5", "6.0", Some(1)), None, "one was asked for");
+    assert_eq!(named("10.0", "6.0", None), None);
+    let Err(Failure::Input(error)) = plan(&wall("3.0", "6.0"), &Settings::default(), &mut |_| ()) else {
+        panic!("planned")
+    };
+    assert!(error.to_string().contains("as one of 2 mm has"), "{error}");
 }
 
 #[test]
