@@ -111,13 +111,17 @@ impl Ledger {
         if next == self.now {
             return self.settle(flash);
         }
-        self.append(flash, &next)?;
+        self.append(flash, Some(&next))?;
         self.now = next;
         Ok(())
     }
-    fn append<F: NorFlash>(&mut self, flash: &mut F, next: &Remembered) -> Result<(), JournalFailed> {
+    /// Writes a record, or what is remembered now.
+    ///
+    /// Not inlined: its payload is not to lie on the stack under what is written next.
+    #[inline(never)]
+    fn append<F: NorFlash>(&mut self, flash: &mut F, next: Option<&Remembered>) -> Result<(), JournalFailed> {
         let mut payload = [0; PAYLOAD_BYTES];
-        let bytes = postcard::to_slice(next, &mut payload).map_err(|_| JournalFailed)?;
+        let bytes = postcard::to_slice(next.unwrap_or(&self.now), &mut payload).map_err(|_| JournalFailed)?;
         let appended = self.journal.append(flash, bytes, &self.keys);
         self.in_doubt = appended.is_err();
         appended
@@ -125,8 +129,7 @@ impl Ledger {
     /// Writes what is remembered behind a record that failed, so that it is this that counts after a reset, in the sector in which
     /// what is written beside it will be looked for.
     fn settle<F: NorFlash>(&mut self, flash: &mut F) -> Result<(), JournalFailed> {
-        let now = self.now;
-        if self.in_doubt { self.append(flash, &now) } else { Ok(()) }
+        if self.in_doubt { self.append(flash, None) } else { Ok(()) }
     }
 
     /// The keys whose images are taken; none while every image is.
@@ -180,8 +183,7 @@ impl Ledger {
     #[inline(never)]
     fn change_sector<F: NorFlash>(&mut self, flash: &mut F) -> Result<(), JournalFailed> {
         self.journal.leave_sector();
-        let now = self.now;
-        self.append(flash, &now)
+        self.append(flash, None)
     }
 
     /// Refused unless an image may be used here: any while no key is provisioned, else one that is signed for this class
