@@ -72,6 +72,8 @@ pub struct Servo<'a> {
     recorder: Recorder<'a>,
     trace: Trace<TRACE_QUEUE>,
     stamps: Stamps<STAMPS>,
+    /// Where answers of the stream are made: memory of a call would have to be cleared each time.
+    answer: [u8; ANSWER],
 }
 
 impl<'a> Servo<'a> {
@@ -85,13 +87,14 @@ impl<'a> Servo<'a> {
             recorder: Recorder::new(recording, setpoint_bytes(settings.axes), RECORD_AFTER),
             trace: Trace::new(TRACE_EVERY),
             stamps: Stamps::new(),
+            answer: [0; ANSWER],
         }
     }
 
     /// Bytes of the stream that had arrived at `arrived_us`; `send` gets the answer to each frame that has one.
     pub fn receive(&mut self, mut bytes: &[u8], arrived_us: u64, clock: &impl Clock, send: &mut impl FnMut(&[u8])) {
         let called = clock.count();
-        let Self { endpoint, bare, loaded, deframer, recorder, trace, stamps } = self;
+        let Self { endpoint, bare, loaded, deframer, recorder, trace, stamps, answer } = self;
         let rewriter = loaded.as_ref().and_then(Loaded::rewriter).unwrap_or(bare);
         while let Some(framed) = deframer.feed(&mut bytes) {
             let packet = match framed {
@@ -106,8 +109,7 @@ impl<'a> Servo<'a> {
             recorder.record(packet.get(1..).unwrap_or(&[]));
             after(endpoint, recorder, trace);
             if verdict.is_accepted() {
-                let mut answer = [0; ANSWER];
-                let made = endpoint.answer_packet(clock.now_us(), &mut answer);
+                let made = endpoint.answer_packet(clock.now_us(), answer);
                 stamps.leave(verdict, arrived_us, clock.count().wrapping_sub(called));
                 if let Some(bytes) = made {
                     send(answer.get(..bytes).unwrap_or(&[]));

@@ -3,6 +3,7 @@
 use super::Work;
 use super::rewrite_support::{FEED, Machine, PASS};
 use std::hint::black_box;
+use truepath_core::rewrite::Output;
 
 /// Radius of the path, nm. A longer image goes round it more often; where it is, the rewriter knows by progress.
 const RADIUS: f64 = 50e6;
@@ -42,11 +43,13 @@ pub fn tick(segments: usize) -> Work {
         })
         .collect();
     let (rewriter, mut state, mut at) = (machine.rewriter, middle, 0);
+    let mut output = Output::NONE;
     Box::new(move || {
         if at == setpoints.len() {
             (state, at) = (middle, 0);
         }
-        black_box(rewriter.tick(&mut state, black_box(&setpoints[at])));
+        rewriter.tick_into(&mut state, black_box(&setpoints[at]), &mut output);
+        black_box(&output);
         at += 1;
     })
 }

@@ -12,23 +12,37 @@
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
 
 /// What a byte does to the checksum, with 0 … 3 bytes behind it.
-static TABLES: [[u32; 256]; 4] = {
+const TABLES: [[u32; 256]; 4] = {
     let [a, b, c, d, ..] = *Crc::<u32, Table<16>>::new(&CRC_32_ISO_HDLC).table();
     [a, b, c, d]
 };
 
+// Each by itself: as parts of one their places would be sums, made anew for every word.
+static LAST: [u32; 256] = table(0);
+static THIRD: [u32; 256] = table(1);
+static SECOND: [u32; 256] = table(2);
+static FIRST: [u32; 256] = table(3);
+
+#[expect(clippy::indexing_slicing, reason = "evaluated by the compiler only")]
+const fn table(behind: usize) -> [u32; 256] {
+    TABLES[behind]
+}
+
 /// CRC-32 (ISO-HDLC, as in zip and Ethernet) of bytes as they are.
+///
+/// Never part of its caller: the four tables and the sum need all registers there are, and in a larger function they would not stay in
+/// them.
+#[inline(never)]
 pub fn crc32(bytes: &[u8]) -> u32 {
-    let [last, third, second, first] = &TABLES;
     let entry = |table: &[u32; 256], byte: u8| table.get(usize::from(byte)).copied().unwrap_or(0);
     let (words, rest) = bytes.as_chunks::<4>();
     let mut crc = CRC_32_ISO_HDLC.init;
     for word in words {
         let [a, b, c, d] = (u32::from_le_bytes(*word) ^ crc).to_le_bytes();
-        crc = entry(first, a) ^ entry(second, b) ^ entry(third, c) ^ entry(last, d);
+        crc = entry(&FIRST, a) ^ entry(&SECOND, b) ^ entry(&THIRD, c) ^ entry(&LAST, d);
     }
     for byte in rest {
-        crc = (crc >> 8) ^ entry(last, crc as u8 ^ byte);
+        crc = (crc >> 8) ^ entry(&LAST, crc as u8 ^ byte);
     }
     crc ^ CRC_32_ISO_HDLC.xorout
 }

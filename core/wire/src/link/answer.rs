@@ -116,20 +116,20 @@ pub(super) fn write(output: &Output, axes: u8, raw: &mut [u8]) -> Result<usize, 
     let corrections = usize::from(axes).wrapping_mul(4);
     let (corrections, places) = body.split_at_mut_checked(corrections).ok_or(LinkError::Buffer)?;
     let (corrections, places) = (corrections.as_chunks_mut::<4>().0, places.as_chunks_mut::<8>().0);
-    // Written out: a loop becomes a call of the copying routine, which takes five instructions a byte.
-    let mut put = |axis: usize, correction: i32, position: i64| {
+    // Written out: a loop becomes a call of the copying routine, which takes five instructions a byte. Each is loaded where it is written.
+    let mut put = |axis: usize, correction: &i32, position: &i64| {
         if let (Some(to), Some(place)) = (corrections.get_mut(axis), places.get_mut(axis)) {
             *to = correction.to_le_bytes();
             *place = position.to_le_bytes();
         }
     };
-    let (c, p) = (output.correction_nm, output.axes);
-    put(0, c[0], p[0]);
-    put(1, c[1], p[1]);
-    put(2, c[2], p[2]);
-    put(3, c[3], p[3]);
-    put(4, c[4], p[4]);
-    put(5, c[5], p[5]);
+    let ([c0, c1, c2, c3, c4, c5], [p0, p1, p2, p3, p4, p5]) = (&output.correction_nm, &output.axes);
+    put(0, c0, p0);
+    put(1, c1, p1);
+    put(2, c2, p2);
+    put(3, c3, p3);
+    put(4, c4, p4);
+    put(5, c5, p5);
     *crc = crc32(content).to_le_bytes();
     Ok(bytes)
 }

@@ -158,7 +158,7 @@ impl Endpoint {
             Verdict::Accepted | Verdict::Damaged(_) => 0,
         };
         Counters::one_more(&mut self.counters.accepted);
-        self.stray = Stray::default();
+        self.stray.run = 0;
         self.last = Some(setpoint.sequence);
         self.heard_us = arrived_us;
         if self.due_us.is_some() {
@@ -174,7 +174,7 @@ impl Endpoint {
         } else if self.pace.is_too_fast(arrived_us) {
             rewriter.break_off(&mut self.state, Reason::FrameRate);
         }
-        self.output = rewriter.tick(&mut self.state, setpoint);
+        rewriter.tick_into(&mut self.state, setpoint, &mut self.output);
         self.due_us = Some(arrived_us);
         let reason = self.output.reason;
         if reason != before && reason.is_fault() {

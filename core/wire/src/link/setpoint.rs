@@ -74,7 +74,7 @@ impl SetpointFrame {
     ///
     /// # Errors
     /// Another length, damaged, another kind, version or number of axes, or the reserved byte is set.
-    #[inline]
+    #[inline(never)]
     pub fn decode(raw: &[u8], axes: u8) -> Result<Setpoint, LinkError> {
         let length = LinkError::Length { expected: setpoint_bytes(axes), found: raw.len() };
         if raw.len() != setpoint_bytes(axes) {
@@ -86,25 +86,26 @@ impl SetpointFrame {
             return Err(LinkError::Checksum { stored, computed });
         }
         let (head, places) = content.split_first_chunk::<HEAD>().ok_or(length)?;
-        let &[[kind, version, count, reserved], sequence, [f0, f1, a0, a1], spindle, frame_crc] =
-            head.as_chunks::<4>().0
-        else {
+        let &[first, sequence, flags_and_age, spindle, frame_crc] = head.as_chunks::<4>().0 else {
             return Err(length);
         };
-        check_head(kind, KIND, version, count, axes)?;
-        if reserved != 0 {
+        // One question for all that is right; only what is wrong is looked at piece by piece.
+        if first != [KIND, LINK_VERSION, axes, 0] {
+            let [kind, version, count, _] = first;
+            check_head(kind, KIND, version, count, axes)?;
             return Err(LinkError::Reserved);
         }
+        let flags_and_age = u32::from_le_bytes(flags_and_age);
         let places = places.as_chunks::<8>().0;
         let place = |axis: usize| places.get(axis).map_or(0, |bytes| i64::from_le_bytes(*bytes));
         Ok(Setpoint {
             // Written out: a loop becomes a call of the copying routine, which takes five instructions a byte.
             axes: [place(0), place(1), place(2), place(3), place(4), place(5)],
             spindle_millirpm: u32::from_le_bytes(spindle),
-            spindle_age_ticks: u16::from_le_bytes([a0, a1]).into(),
+            spindle_age_ticks: flags_and_age >> 16,
             sequence: u32::from_le_bytes(sequence),
             frame_crc: u32::from_le_bytes(frame_crc),
-            flags: Flags(u16::from_le_bytes([f0, f1])),
+            flags: Flags(flags_and_age as u16),
         })
     }
 }

@@ -62,18 +62,17 @@ impl<const N: usize> Deframer<N> {
     /// Four bytes at a time while none is zero and there is room.
     #[inline]
     fn words(&mut self, bytes: &mut &[u8]) {
-        while let Some((word, rest)) = bytes.split_first_chunk::<4>() {
-            let Some((place, _)) = self.packet.get_mut(self.length..).and_then(|room| room.split_first_chunk_mut())
-            else {
-                return;
-            };
+        let Some(room) = self.packet.get_mut(self.length..) else { return };
+        let mut taken = 0usize;
+        for (place, word) in room.as_chunks_mut::<4>().0.iter_mut().zip(bytes.as_chunks::<4>().0) {
             if has_zero(u32::from_le_bytes(*word)) {
-                return;
+                break;
             }
             *place = *word;
-            self.length = self.length.wrapping_add(4);
-            *bytes = rest;
+            taken = taken.wrapping_add(4);
         }
+        self.length = self.length.wrapping_add(taken);
+        *bytes = bytes.get(taken..).unwrap_or(&[]);
     }
 }
 

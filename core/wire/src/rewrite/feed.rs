@@ -53,18 +53,18 @@ impl FeedScale {
         let speed = high_word(way_nm << 8, self.mantissa);
         // value = speed · reciprocal · 2^(exponent + 32 − 8 + shift − 62) = speed · reciprocal · 2^(left − 36)
         let left = self.exponent.wrapping_add(22).wrapping_add(shift as i32);
-        let (high, drop) = if left >= 0 {
+        if left >= 0 {
             // A speed that leaves its word is a ratio above 2³² · 2³⁰ / 2³⁶.
             if speed.leading_zeros() < left.unsigned_abs() {
                 return if speed == 0 { 0 } else { MOST };
             }
-            (high_word(speed.wrapping_shl(left.unsigned_abs()), reciprocal), 4)
+            // The low word does not reach the rounding. The high word is below 2³¹.
+            let high = high_word(speed.wrapping_shl(left.unsigned_abs()), reciprocal);
+            (high.wrapping_add(8) >> 4).min(MOST)
         } else {
-            (high_word(speed, reciprocal), 4i32.wrapping_sub(left).min(31))
-        };
-        // The low word does not reach the rounding. The high word is below 2³¹.
-        let half = 1u32.wrapping_shl(drop.unsigned_abs()) >> 1;
-        (high.wrapping_add(half).wrapping_shr(drop.unsigned_abs())).min(MOST)
+            let (high, drop) = (high_word(speed, reciprocal), 4u32.wrapping_add(left.unsigned_abs()).min(31));
+            (high.wrapping_add(1u32.wrapping_shl(drop) >> 1).wrapping_shr(drop)).min(MOST)
+        }
     }
 }
 

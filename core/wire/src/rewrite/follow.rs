@@ -2,12 +2,11 @@
 
 use super::feed::FeedRatio;
 use super::frame::Local;
-use super::locate::{FRACTION_BITS, FRACTION_ONE, Foot, Place, dot, locate, product, square};
+use super::locate::{FRACTION_BITS, FRACTION_ONE, Foot, Place, dot, locate, share, square};
 use super::mode::Mode;
 use super::state::{FADE_BITS, FADE_ONE, Phase, State};
 use super::{Flags, Plan, Reason, Rewriter, Setpoint};
 use crate::image::Node;
-use truepath_units::shift_rounded_i63;
 
 impl Rewriter<'_> {
     /// Waits for the gate and says whether the setpoint has entered it: over the start of the path at gate height or
@@ -51,10 +50,7 @@ impl Rewriter<'_> {
     pub(super) fn follow(&self, plan: &Plan<'_>, state: &mut State, setpoint: &Setpoint) -> (i32, i32) {
         let advanced = self.arrive(state, setpoint).and_then(|moved| self.advance(plan, state, setpoint, moved));
         match advanced {
-            Ok(way) => {
-                let judged = self.feed(plan, state, setpoint, way);
-                wanted(plan, state, judged)
-            }
+            Ok(way) => self.correction(plan, state, setpoint, way),
             Err(reason) => {
                 state.end(reason);
                 (0, 0)
@@ -150,13 +146,20 @@ impl Rewriter<'_> {
         Ok(state.mode == Mode::Hold)
     }
 
+    /// What is wanted at the place that was reached. One stage: two would save and hand over as much again as they share.
+    #[inline(never)]
+    fn correction(&self, plan: &Plan<'_>, state: &mut State, setpoint: &Setpoint, way: Option<i32>) -> (i32, i32) {
+        let judged = self.feed(plan, state, setpoint, way);
+        wanted(plan, state, judged)
+    }
+
     /// Takes in the feed of a way and moves the fade factor one step; gives the feed ratio to correct for, units of
     /// 2⁻¹⁶.
     ///
     /// The feed is judged only while the setpoint moves: a standing cutter makes no chips, and its correction stays
     /// what it was. So is a missing load, and only in the pass. When the conditions are met again, the correction comes
     /// back at the same rate.
-    #[inline(never)]
+    #[inline(always)]
     fn feed(&self, plan: &Plan<'_>, state: &mut State, setpoint: &Setpoint, way: Option<i32>) -> u32 {
         let spindle = self.live_spindle(setpoint);
         if let Some(way) = way {
@@ -240,7 +243,7 @@ impl Plan<'_> {
 }
 
 /// The correction at the place: both ends of the segment scaled by the feed, then between them, then faded.
-#[inline(never)]
+#[inline(always)]
 fn wanted(plan: &Plan<'_>, state: &State, ratio: u32) -> (i32, i32) {
     let [a, b, ..] = plan.image.stored_from(state.place.node) else {
         return (0, 0);
@@ -255,11 +258,10 @@ fn wanted(plan: &Plan<'_>, state: &State, ratio: u32) -> (i32, i32) {
 
 #[inline(always)]
 fn between(low: i32, high: i32, fraction: i32) -> i32 {
-    let rise = product(high.wrapping_sub(low), fraction);
-    low.wrapping_add(shift_rounded_i63(rise, FRACTION_BITS) as i32)
+    low.wrapping_add(share(high.wrapping_sub(low), fraction, FRACTION_BITS))
 }
 
 #[inline(always)]
 fn faded(full: i32, fade: i32) -> i32 {
-    shift_rounded_i63(product(full, fade), FADE_BITS) as i32
+    share(full, fade, FADE_BITS)
 }

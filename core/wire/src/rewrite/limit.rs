@@ -144,7 +144,8 @@ impl Limits {
         axis.velocity = velocity;
         axis.position = axis.position.wrapping_add(velocity);
         axis.target = goal;
-        target.wrapping_sub(goal).unsigned_abs() > 2
+        // −2 … 2, as one question.
+        target.wrapping_sub(goal).wrapping_add(2) as u32 > 4
     }
 
     /// The table, interpolated: at most the velocity from which braking needs the distance.

@@ -10,40 +10,50 @@ use truepath_units::shift_rounded_i31;
 
 impl Rewriter<'_> {
     /// Rewrites one setpoint. Cost is bounded; nothing in it can fail or panic.
+    #[inline]
+    pub fn tick(&self, state: &mut State, setpoint: &Setpoint) -> Output {
+        let mut output = Output::NONE;
+        self.tick_into(state, setpoint, &mut output);
+        output
+    }
+
+    /// The same, with the output written where it stays, every part of it: a copy of it costs a tenth of a tick.
     ///
     /// Its stages are functions of their own, because one large one spends a sixth of its instructions on keeping
     /// values that no register has room for.
-    pub fn tick(&self, state: &mut State, setpoint: &Setpoint) -> Output {
+    pub fn tick_into(&self, state: &mut State, setpoint: &Setpoint, output: &mut Output) {
+        output.axes = setpoint.axes;
+        output.correction_nm = [0; AXES];
+        output.status = Status(0);
         match state.mode {
-            Mode::Off => {
-                state.drives_seen_enabled = setpoint.flags.has(Flags::DRIVES_ENABLED);
-                output(state, setpoint, [(0, 0), (1, 0)], Status(0))
-            }
-            Mode::Bypass => output(state, setpoint, [(0, 0), (1, 0)], Status(0)),
-            _ => self.run(state, setpoint),
+            Mode::Off => state.drives_seen_enabled = setpoint.flags.has(Flags::DRIVES_ENABLED),
+            Mode::Bypass => {}
+            _ => self.run(state, setpoint, output),
         }
+        state.sequence = setpoint.sequence;
+        output.sequence = setpoint.sequence;
+        output.forward = state.mode != Mode::Off;
+        output.mode = state.mode;
+        output.reason = state.reason;
+        output.place = state.place;
     }
 
+    /// The tick of a correction that is armed, on, or on its way out.
     #[inline(never)]
-    fn run(&self, state: &mut State, setpoint: &Setpoint) -> Output {
-        let mut added = [(0, 0), (1, 0)];
-        let mut status = Status(0);
+    fn run(&self, state: &mut State, setpoint: &Setpoint, output: &mut Output) {
         if let Some((plan, (x, y))) = self.wanted(state, setpoint)
             && let Some(mapping) = &state.mapping
         {
             let goal = mapping.machine(x, y);
             let [mx, my] = mapping.plane();
-            status.set(Status::FADED, state.fade < FADE_ONE);
             let [ax, ay] = &mut state.axes;
-            let (nm_x, status_x) = self.carry(plan, setpoint, mx, ax, goal.0);
-            let (nm_y, status_y) = self.carry(plan, setpoint, my, ay, goal.1);
-            added = [(mx, nm_x), (my, nm_y)];
-            status = status.with(status_x).with(status_y);
+            let status = self.carry(plan, ax, goal.0, mx, output).with(self.carry(plan, ay, goal.1, my, output));
+            output.status = status;
+            output.status.set(Status::FADED, state.fade < FADE_ONE);
             if status.has(Status::JOINT_LIMITED) && !state.is_ending() {
                 state.end(Reason::JointLimit);
             }
         }
-        output(state, setpoint, added, status)
     }
 
     /// The correction wanted, in program coordinates, 2⁻⁸ nm; none where nothing is to be added.
@@ -74,67 +84,41 @@ impl Rewriter<'_> {
         Some((plan, self.follow(plan, state, setpoint)))
     }
 
-    /// Moves the correction of an axis one tick towards its goal; gives what of it may be added, nm.
-    #[inline(always)]
-    fn carry(
-        &self,
-        plan: &Plan<'_>,
-        setpoint: &Setpoint,
-        machine: usize,
-        axis: &mut AxisState,
-        goal: i32,
-    ) -> (i32, Status) {
+    /// Moves the correction of an axis one tick towards its goal and adds what of it may be added.
+    #[inline(never)]
+    fn carry(&self, plan: &Plan<'_>, axis: &mut AxisState, goal: i32, machine: usize, output: &mut Output) -> Status {
         let mut status = Status(0);
         status.set(Status::SATURATED, plan.limits.step(axis, goal));
         status.set(Status::LAGGING, !axis.is_on_target());
-        let (nm, limited) = self.held(setpoint, machine, nanometres(axis.correction().bits()));
-        status.set(Status::JOINT_LIMITED, limited);
-        status.set(Status::WARN, nm.unsigned_abs() > plan.warn_nm);
-        (nm, status)
-    }
-
-    /// A correction held back to the way that is left to the joint limits of its axis, and whether it was. A setpoint
-    /// beyond a limit is the controller's affair; the correction then does not carry it farther out.
-    #[inline(always)]
-    fn held(&self, setpoint: &Setpoint, machine: usize, nm: i32) -> (i32, bool) {
-        let (Some(&position), Some(&(low, high))) = (setpoint.axes.get(machine), self.joints.get(machine)) else {
-            return (nm, false);
-        };
-        let to = position.wrapping_add(nm.into());
-        if to >= low && to <= high { (nm, false) } else { held_back(position, low, high, nm) }
-    }
-}
-
-/// What leaves with a correction of two axes.
-#[inline(always)]
-fn output(state: &mut State, setpoint: &Setpoint, added: [(usize, i32); 2], status: Status) -> Output {
-    state.sequence = setpoint.sequence;
-    let mut axes = setpoint.axes;
-    let mut correction_nm = [0; AXES];
-    for (machine, nm) in added {
-        if let (Some(to), Some(axis)) = (correction_nm.get_mut(machine), axes.get_mut(machine)) {
-            *to = nm;
-            // Within the joint limits, or not farther out than the setpoint.
-            *axis = axis.wrapping_add(nm.into());
+        let mut nm = nanometres(axis.correction().bits());
+        if let (Some(position), Some(correction), Some(&(low, high))) =
+            (output.axes.get_mut(machine), output.correction_nm.get_mut(machine), self.joints.get(machine))
+        {
+            let to = position.wrapping_add(nm.into());
+            if to >= low && to <= high {
+                *position = to;
+            } else {
+                let limited;
+                (nm, limited) = held_back(position, low, high, nm);
+                status.set(Status::JOINT_LIMITED, limited);
+            }
+            *correction = nm;
         }
-    }
-    Output {
-        axes,
-        correction_nm,
-        forward: state.mode != Mode::Off,
-        mode: state.mode,
-        reason: state.reason,
-        status,
-        place: state.place,
-        sequence: setpoint.sequence,
+        status.set(Status::WARN, nm.unsigned_abs() > plan.warn_nm);
+        status
     }
 }
 
+/// Adds to a position what of a correction is within the way that is left to the joint limits of its axis; gives that, and whether it is
+/// less. A setpoint beyond a limit is the controller's affair; the correction then does not carry it farther out.
 #[cold]
-fn held_back(position: i64, low: i64, high: i64, nm: i32) -> (i32, bool) {
+#[inline(never)]
+fn held_back(position: &mut i64, low: i64, high: i64, nm: i32) -> (i32, bool) {
     let room = |room: i64| room.clamp(0, i32::MAX.into()) as i32;
-    let (down, up) = (room(position.saturating_sub(low)), room(high.saturating_sub(position)));
+    let (down, up) = (room(position.saturating_sub(low)), room(high.saturating_sub(*position)));
     let held = nm.min(up).max(down.wrapping_neg());
+    // Within the joint limits, or not farther out than the setpoint.
+    *position = position.wrapping_add(held.into());
     (held, held != nm)
 }
 

@@ -26,6 +26,7 @@ const SPINDLE: u32 = 1_500_000;
 pub struct Machine {
     rewriter: Rewriter<'static>,
     state: State,
+    output: Output,
     stream: Servo<'static>,
     spi: Servo<'static>,
     axes: u8,
@@ -90,8 +91,18 @@ impl Machine {
         (frame.cosine, frame.sine) = (858_993_459, 644_245_094);
         let frame = frame.sealed();
         let next = Setpoint { spindle_millirpm: SPINDLE, frame_crc: frame.crc, ..Setpoint::default() };
-        let mut machine =
-            Self { rewriter, state: State::default(), stream, spi, axes, frame, next, part: 0, now_us: 0 };
+        let mut machine = Self {
+            rewriter,
+            state: State::default(),
+            output: Output::NONE,
+            stream,
+            spi,
+            axes,
+            frame,
+            next,
+            part: 0,
+            now_us: 0,
+        };
         // The device wants to hear the controller before the drives are acknowledged, and to know its pace before it arms.
         for _ in 0..40 {
             machine.send(0, 0, 0, None);
@@ -149,7 +160,9 @@ impl Machine {
         assert_eq!(result.map(|s| s.sequence), Ok(setpoint.sequence));
 
         let (rewriter, state) = (&self.rewriter, &mut self.state);
-        let (ticked, output): (u32, Output) = count(|| rewriter.tick(state, &setpoint));
+        let output = &mut self.output;
+        let (ticked, ()) = count(|| rewriter.tick_into(state, &setpoint, output));
+        let output = *output;
 
         let answer = AnswerFrame { axes, output };
         let mut place = [0; MAX_ANSWER_BYTES + 2];
