@@ -178,8 +178,9 @@ impl Pass<'_, '_> {
         if block.words.is_empty() && block.control.is_none() && block.assignment.is_none() {
             return Ok(false);
         }
-        // A second program number begins a subprogram.
-        let program = block.words.first().is_some_and(|w| w.letter == b'O');
+        // A second program number begins a subprogram. Wherever it stands in its block: in a line that is divided the words before it can
+        // go to the end.
+        let program = block.words.iter().any(|w| w.letter == b'O');
         if program && self.begun {
             return Ok(true);
         }

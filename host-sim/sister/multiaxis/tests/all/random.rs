@@ -98,6 +98,8 @@ fn line() -> impl Strategy<Value = String> {
         "G81 R1",
         "G17",
         "G999",
+        "G9 O1",
+        "M2",
     ]);
     let words = prop::collection::vec((prop::sample::select(vec!["X", "Y", "Z", "A", "C"]), number()), 0..6);
     let feed = prop::sample::select(vec!["", "F100", " F0.5", "F#1"]);
@@ -138,6 +140,16 @@ fn a_second_pass_over_a_rewritten_program_changes_nothing() {
     });
     outcome.expect("no counter-example");
     assert!(rewritten.get() > 100, "{} programs of 4000 were rewritten", rewritten.get());
+}
+
+#[test]
+fn a_program_number_within_a_divided_line_is_one_as_if_it_stood_first() {
+    // Divided, G9 and M2 go to the last piece, and what stood behind them begins the first.
+    let with = |line: &str| format!("G21 G90 G94 M3 F200\nG0 X1 Y2 Z3 A4 C5\nG1 X60 Y20 A30 C6\n{line}\nM30\n");
+    for line in ["O1 X-2 A-3 C1", "G9 O1 X-2 A-3 C1", "G9 M2 O1 X-2 A-3 C1", "N5 O1 X-2 A-3 C1"] {
+        assert!(pass(with(line).as_bytes(), Coordinates::Joints).is_none(), "{line}");
+    }
+    assert!(pass(with("G9 M2 X-2 A-3 C1").as_bytes(), Coordinates::Joints).is_some());
 }
 
 proptest! {
