@@ -15,6 +15,7 @@ use rand_distr::{Distribution, Normal};
 use super::error::{PlantError, require};
 use super::mill::Milled;
 use super::vector::{Point, along, dot, squared_distance, sub};
+use super::wall::REACH_MM;
 
 /// Where to touch.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,7 +67,8 @@ pub fn probe(milled: &Milled, plan: &ProbePlan) -> Result<Vec<Touch>, PlantError
             }
             let wall = path.wall(i, milled.cut.radius_mm);
             let wrong = milled.machine.probe.beyond(out.len() as u64, path.normal[i], milled.machine.seed);
-            let rest = rest_along_normal(milled, errors, i, ball) + noise.sample(&mut rng) + wrong;
+            let rest = rest_along_normal(milled, errors, i, ball).ok_or(PlantError::NoWallAt { s_mm })?;
+            let rest = rest + noise.sample(&mut rng) + wrong;
             let c = along(wall, path.normal[i], rest);
             let z = plan.tip_z_mm + level * milled.cut.axial_depth_mm;
             out.push(Touch { s_mm, level, ball_centre: [c[0], c[1], z] });
@@ -75,21 +77,25 @@ pub fn probe(milled: &Milled, plan: &ProbePlan) -> Result<Vec<Touch>, PlantError
     Ok(out)
 }
 
-/// Where the ball's centre stops, along the normal from the nominal wall point (negative: towards the cutter), mm.
-fn rest_along_normal(milled: &Milled, errors: &[f64], i: usize, ball: f64) -> f64 {
+/// Where the ball's centre stops, along the normal from the nominal wall point (negative: towards the cutter), mm; `None` where it meets
+/// no wall.
+fn rest_along_normal(milled: &Milled, errors: &[f64], i: usize, ball: f64) -> Option<f64> {
     let path = &milled.path;
     let radius = milled.cut.radius_mm;
     let (aim, normal) = (path.wall(i, radius), path.normal[i]);
     // Samples of the centre path whose wall points can lie under the ball, also on a concave arc, where the wall is longer.
     let window = ((ball + 1.0) / path.step_mm).ceil() as usize;
     let (lo, hi) = (i.saturating_sub(window), (i + window).min(path.len() - 1));
-    let mut rest = f64::INFINITY;
+    // A wall can be farther off than a small ball is large.
+    let reach = ball.max(REACH_MM);
+    let mut rest: Option<f64> = None;
     for (k, e) in errors.iter().enumerate().take(hi + 1).skip(lo) {
         let wall: Point = along(path.wall(k, radius), path.normal[k], -e);
         let depth = dot(sub(wall, aim), normal);
         let room = ball * ball - (squared_distance(wall, aim) - depth * depth);
-        if e.is_finite() && room >= 0.0 && depth.abs() < ball {
-            rest = rest.min(depth - room.sqrt());
+        if e.is_finite() && room >= 0.0 && depth.abs() < reach {
+            let here = depth - room.sqrt();
+            rest = Some(rest.map_or(here, |rest| rest.min(here)));
         }
     }
     rest

@@ -8,7 +8,7 @@ use super::mill::{Milled, Track};
 use super::vector::{Point, along, dot, squared_distance, sub};
 
 /// Circles that end farther from the nominal wall than this do not make it, mm.
-const REACH_MM: f64 = 2.0;
+pub(super) const REACH_MM: f64 = 2.0;
 /// A nominal wall point that the nominal path itself cuts away by more than this is not on the part, mm.
 const UNDERCUT_MM: f64 = 0.02;
 

@@ -138,6 +138,19 @@ fn probing_is_reproducible_by_seed_and_finds_the_wall_error() {
 }
 
 #[test]
+fn a_ball_smaller_than_the_wall_is_off_finds_it_all_the_same() {
+    let mut milled = pass(&corner(), Side::Right, &d20(), &hard());
+    milled.machine.probe_noise_mm = 0.0;
+    let at = |ball_diameter_mm| {
+        let plan = ProbePlan { s_mm: vec![20.0], levels: vec![0.5], ball_diameter_mm, tip_z_mm: -15.0 };
+        probe(&milled, &plan).expect("a wall")[0].ball_centre[0] - 0.5 * ball_diameter_mm
+    };
+    let off = at(6.0) - 24.0;
+    assert!(off.abs() > 0.06, "{off}");
+    assert!((at(0.1) - 24.0 - off).abs() < 2e-4, "{} {off}", at(0.1));
+}
+
+#[test]
 fn a_place_off_the_contour_cannot_be_probed() {
     let milled = pass(&corner(), Side::Right, &d20(), &p23());
     let plan = ProbePlan { s_mm: vec![500.0], levels: vec![0.5], ball_diameter_mm: 6.0, tip_z_mm: -15.0 };
