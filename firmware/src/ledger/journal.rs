@@ -27,6 +27,7 @@ use crate::flash::{BLANK, LEDGER_SECTORS, SECTOR_BYTES, WORD_BYTES, Word, opened
 
 /// Most bytes of a payload.
 pub const PAYLOAD_BYTES: usize = PLACE_BYTES - WORD_BYTES;
+const _: () = assert!(WORD_BYTES + PAYLOAD_BYTES == PLACE_BYTES, "a record with its head fills its place");
 /// Places that are tried when programming fails, before the journal gives up.
 const ATTEMPTS: usize = 3;
 /// Its digit is the version of the record: one of another version is no record.

@@ -63,13 +63,13 @@ const TRACES: &[Trace] = &[
     ),
     trace(
         Rule::Sum,
-        ("rewrite/tick.rs", "fn output("),
+        ("rewrite/tick.rs", "fn carry("),
         ("link_chaos", "whatever_the_line_does_only_setpoints_that_were_sent_go_out_and_only_within_the_limits"),
         &[],
     ),
     trace(
         Rule::Plain,
-        ("rewrite/tick.rs", "Mode::Bypass => output("),
+        ("rewrite/tick.rs", "Mode::Bypass => {}"),
         ("rewrite_states", "bypass_and_armed_pass_any_setpoint_byte_for_byte"),
         &["program repeated without arming", "restart in the middle"],
     ),
