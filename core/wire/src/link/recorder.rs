@@ -131,8 +131,9 @@ mod tests {
         let from: [u8; 48] = core::array::from_fn(|i| i as u8 | 0x80);
         for length in 0..from.len() {
             let mut to = [0; 48];
-            copy(from.get(..length).unwrap_or(&[]), to.get_mut(..length).unwrap_or_default());
-            assert!((0..48).all(|i| to[i] == if i < length { from[i] } else { 0 }), "{length}: {to:?}");
+            copy(from.split_at(length).0, to.split_at_mut(length).0);
+            let (copied, behind) = to.split_at(length);
+            assert!(from.starts_with(copied) && behind.iter().all(|&byte| byte == 0), "{length}: {to:?}");
         }
     }
 }
