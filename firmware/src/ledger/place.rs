@@ -15,3 +15,8 @@ pub const FIRST_COUNTER_PLACE: usize = ALL_PLACES - 1 - COUNTER_PLACES;
 pub const LOG_PLACES: usize = 12;
 /// Places for records in a sector; the log lies behind them.
 pub const PLACES: usize = FIRST_COUNTER_PLACE - LOG_PLACES;
+
+const _: () = assert!(
+    PLACES + LOG_PLACES + COUNTER_PLACES + 1 == ALL_PLACES,
+    "the parts fill a sector; the last place is that of the keys"
+);
