@@ -13,7 +13,7 @@ pub const CRATES: [&str; 5] = ["truepath_core", "truepath_model", "truepath_wire
 /// The crate whose functions may compute in floating point.
 pub const FLOAT_CRATE: &str = "truepath_rs274";
 /// The function called in every servo cycle: its crate, its module, its name.
-const TICK: (&str, &str, &str) = ("truepath_wire", "rewrite", "tick");
+const TICK: (&str, &str, &str) = ("truepath_wire", "rewrite", "tick_into");
 
 /// Whether an entry is an operation on floats: an instruction of the intermediate representation, or a routine of the
 /// run-time ABI for ARM (IHI0043, tables 2 to 8).
@@ -113,7 +113,10 @@ mod tests {
     #[test]
     fn the_servo_cycle_may_not_divide_or_panic_even_in_a_function_it_calls() {
         let said = objections(&code(&[
-            ("truepath_wire::rewrite::Rewriter::tick", &["truepath_units::round::ratio", "core::panicking::panic"]),
+            (
+                "truepath_wire::rewrite::Rewriter::tick_into",
+                &["truepath_units::round::ratio", "core::panicking::panic"],
+            ),
             ("truepath_wire::rewrite::Rewriter::new", &["llvm sdiv i128"]),
             ("truepath_units::round::ratio", &["__aeabi_ldivmod", "llvm mul i128"]),
             ("truepath_model::correct::design", &["__aeabi_ldivmod"]),
@@ -121,9 +124,9 @@ mod tests {
         assert_eq!(
             said,
             [
-                "division in the servo cycle: truepath_wire::rewrite::Rewriter::tick → truepath_units::round::ratio → __aeabi_ldivmod",
-                "128-bit product in the servo cycle: truepath_wire::rewrite::Rewriter::tick → truepath_units::round::ratio → llvm mul i128",
-                "panic or formatting in the servo cycle: truepath_wire::rewrite::Rewriter::tick → core::panicking::panic",
+                "division in the servo cycle: truepath_wire::rewrite::Rewriter::tick_into → truepath_units::round::ratio → __aeabi_ldivmod",
+                "128-bit product in the servo cycle: truepath_wire::rewrite::Rewriter::tick_into → truepath_units::round::ratio → llvm mul i128",
+                "panic or formatting in the servo cycle: truepath_wire::rewrite::Rewriter::tick_into → core::panicking::panic",
             ]
         );
     }
@@ -138,6 +141,6 @@ mod tests {
     #[test]
     fn a_servo_cycle_that_is_not_in_the_library_is_not_taken_for_a_clean_one() {
         let said = objections(&code(&[("truepath_wire::rewrite::Rewriter::new", &[])]));
-        assert_eq!(said, ["rewrite::tick is not in the library: the servo cycle was not checked"]);
+        assert_eq!(said, ["rewrite::tick_into is not in the library: the servo cycle was not checked"]);
     }
 }
