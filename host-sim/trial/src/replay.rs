@@ -1,6 +1,6 @@
 //! Recorded setpoints through the device's own code.
 //!
-//! The ticks of a file go through [`Rewriter::tick`], the function the coprocessor calls, in the same order and with
+//! The ticks of a file go through [`Rewriter::tick`], which is what the coprocessor calls, in the same order and with
 //! the same settings scaled to the file's tick rate: what comes out is what the device would have sent to the drives,
 //! bit for bit. The image is armed with its own identity, once, before the first tick.
 //!

@@ -1,8 +1,8 @@
 //! Setpoint in, corrected setpoint out, in the same tick: the only code in the servo cycle.
 //!
 //! [`Rewriter`] is configuration (settings, image and what follows from them), [`State`] is what changes;
-//! [`Rewriter::tick`] takes one setpoint. Called once per interpolator cycle, by the servo task of the device or by
-//! the replay on a PC, with the same bits as result. It holds no float, no division, no 128-bit product, no
+//! [`Rewriter::tick`] takes one setpoint. Called once per interpolator cycle, by the servo task of the device
+//! ([`Rewriter::tick_into`]) or by the replay on a PC, with the same bits as result. It holds no float, no division, no 128-bit product, no
 //! formatting; its loops are bounded ([`ADVANCE_LIMIT`]).
 //!
 //! | state | what goes out | leaves it by |
