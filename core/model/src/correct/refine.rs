@@ -44,10 +44,11 @@ pub(super) fn refine(
         }
     }
     fill_gaps(updates);
-    if max_gouge.is_some() {
-        // Where the guard begins, neighbours are asked for different things, and single positions would run away.
-        (0..SMOOTHED).for_each(|_| smooth(updates));
-    }
+    // Beside tight inside corners the tooth that makes the wall changes from height to height, and positions next to each other
+    // are asked for different things: unsmoothed, the path would come to zigzag where the wall does not see it and the drives do.
+    // Where a guard begins, more of it.
+    let times = if max_gouge.is_some() { SMOOTHED } else { 1 };
+    (0..times).for_each(|_| smooth(updates));
     let samples = path.samples().iter().skip(path.first());
     for ((node, update), sample) in nodes.iter_mut().zip(updates.iter()).zip(samples) {
         // The refinement follows the chip: it comes from the change of load along the path.
