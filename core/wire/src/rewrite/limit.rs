@@ -16,7 +16,8 @@
 //! which lie below the inverse because that is concave. For d ≤ a it is exact: the last piece is made in one tick.
 //!
 //! To follow a target the velocity of the target itself is asked for, plus what brakes in time on the distance still
-//! missing. When nothing limits, the output equals the target to the last bit. Everything is odd in its input, so a
+//! missing. When nothing limits, the output equals the target to the last bit; half of the way to the clamp that is known without
+//! a look at the table, and most ticks end there. Everything is odd in its input, so a
 //! mirrored target gives the mirrored output.
 
 use super::SettingsError;
@@ -37,8 +38,19 @@ pub struct Limits {
     clamp: i32,
     velocity: i32,
     acceleration: i32,
+    /// Where and how fast a target is followed without a look at the clamp.
+    free: Free,
     ramp_ticks: u32,
     allowed: [u32; SAMPLES],
+}
+
+/// Places so far from the clamp, on either side, that the table allows a velocity.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Free {
+    velocity: i32,
+    /// The places from −`reach` on, so many of them.
+    reach: i32,
+    places: u32,
 }
 
 /// Correction of one axis with its velocity and the target of the tick before, steps of 2⁻⁸ nm.
@@ -98,7 +110,9 @@ impl Limits {
         for (index, entry) in allowed.iter_mut().enumerate() {
             *entry = braking_velocity(sample(index.min(LAST_SAMPLE)), acceleration).min(velocity.unsigned_abs());
         }
-        let mut made = Self { clamp: clamp as i32, velocity, acceleration, ramp_ticks: 0, allowed };
+        let mut made =
+            Self { clamp: clamp as i32, velocity, acceleration, free: Free::default(), ramp_ticks: 0, allowed };
+        made.free = made.freely();
         made.ramp_ticks = made.longest_ramp();
         Ok(made)
     }
@@ -124,13 +138,33 @@ impl Limits {
     /// of a rotation.
     #[inline]
     pub fn step(&self, axis: &mut AxisState, target: i32) -> bool {
+        // On the target, and nothing limits: it is followed, which is what the rule comes to.
+        let follow = target.wrapping_sub(axis.position);
+        if axis.target == axis.position
+            && (axis.position.wrapping_add(self.free.reach) as u32) < self.free.places
+            && is_within(follow, self.free.velocity)
+            && is_within(follow.wrapping_sub(axis.velocity), self.acceleration)
+        {
+            *axis = AxisState { position: target, velocity: follow, target };
+            return false;
+        }
+        self.limited(axis, target)
+    }
+
+    /// The rule, wherever the axis is and whatever is asked of it.
+    #[inline(always)]
+    fn limited(&self, axis: &mut AxisState, target: i32) -> bool {
         let (v, a) = (self.velocity, self.acceleration);
         let goal = within(target, self.clamp);
         // In range: clamp < 2³⁰, so differences of two places are below 2³¹.
         let missing = axis.target.wrapping_sub(axis.position);
-        let sign = missing >> 31;
-        let away = (missing ^ sign).wrapping_sub(sign);
-        let approach = (away.min(self.braking(away.unsigned_abs())) ^ sign).wrapping_sub(sign);
+        let approach = if missing == 0 {
+            0
+        } else {
+            let sign = missing >> 31;
+            let away = (missing ^ sign).wrapping_sub(sign);
+            (away.min(self.braking(away.unsigned_abs())) ^ sign).wrapping_sub(sign)
+        };
         let wish = within(goal.wrapping_sub(axis.target), v).wrapping_add(approach);
         // The table ends at ±V, so this is also the limit of speed.
         let wish = if wish >= 0 {
@@ -165,6 +199,17 @@ impl Limits {
         low.wrapping_add(rise as u32) as i32
     }
 
+    /// As fast as any, if that leaves half of the way to the clamp or more; else what half of the way allows.
+    fn freely(&self) -> Free {
+        let clamp = self.clamp.unsigned_abs();
+        let half = (0..=LAST_SAMPLE).rev().find(|&i| sample(i) <= u64::from(clamp >> 1)).unwrap_or(0);
+        let allowed = |i: usize| self.allowed.get(i).copied().unwrap_or(0);
+        let enough = (0..half).find(|&i| allowed(i) == allowed(half)).unwrap_or(half);
+        let reach = clamp.saturating_sub(sample(enough) as u32);
+        let places = reach.wrapping_shl(1).wrapping_add(1);
+        Free { velocity: allowed(enough) as i32, reach: reach as i32, places }
+    }
+
     /// Stop, turn, cross the clamp, brake: V/a three times with a fourth for the lines below the root, clamp/V, and
     /// a few ticks of rounding.
     fn longest_ramp(&self) -> u32 {
@@ -179,6 +224,12 @@ impl Limits {
 #[inline]
 fn within(value: i32, magnitude: i32) -> i32 {
     value.min(magnitude).max(magnitude.wrapping_neg())
+}
+
+/// Whether a value is within ± a magnitude, 0…2³⁰.
+#[inline(always)]
+const fn is_within(value: i32, magnitude: i32) -> bool {
+    value.wrapping_add(magnitude) as u32 <= (magnitude as u32).wrapping_shl(1)
 }
 
 /// The distance a sample of the table stands for.

@@ -140,6 +140,37 @@ fn the_samples_of_the_table_are_the_inverse_of_the_braking_way() {
     }
 }
 
+#[test]
+fn half_of_the_way_to_the_clamp_is_followed_freely() {
+    for made in [usual(), limits(50_000, 1_000_000_000, 100_000_000, 1_000), limits(1, 1 << 30, 1 << 40, 1_000)] {
+        let Free { velocity, reach, places } = made.free;
+        assert!(reach >= made.clamp / 2 && places == 2 * reach as u32 + 1, "{:?}", made.free);
+        assert!(
+            velocity >= 1
+                && braking_way(i64::from(velocity), i64::from(made.acceleration)) <= i64::from(made.clamp - reach)
+        );
+    }
+}
+
+#[test]
+fn at_the_end_of_the_free_way_a_target_is_followed_as_the_rule_says() {
+    let made = usual();
+    let Free { velocity, reach, .. } = made.free;
+    let mut limits_it = 0;
+    for (beside, sign, way) in
+        (-2..=2).flat_map(|k| [-1, 1].map(|s| (k, s))).flat_map(|(k, s)| [-1, 0, 1].map(|w| (k, s, w)))
+    {
+        let (place, follow) = (sign * (reach + beside), sign * (velocity + way));
+        let axis = AxisState { position: place, velocity: follow, target: place };
+        let (mut stepped, mut ruled) = (axis, axis);
+        assert_eq!(made.step(&mut stepped, place + follow), made.limited(&mut ruled, place + follow));
+        assert_eq!(stepped, ruled, "{beside} {follow}");
+        limits_it += usize::from(ruled.position != place + follow);
+    }
+    // One beyond, the rule does limit.
+    assert!(limits_it >= 4, "{limits_it}");
+}
+
 fn any_limits() -> impl Strategy<Value = Limits> {
     (1i64..4_000_000, 0u32..22, 0u32..32, prop_oneof![Just(1_000u32), Just(400), Just(10_000)]).prop_filter_map(
         "limits vanish or take long",
@@ -173,6 +204,21 @@ proptest! {
                 prop_assert!(axis.velocity.abs() <= made.velocity);
                 prop_assert!((axis.velocity - before.velocity).abs() <= made.acceleration);
                 prop_assert_eq!((mirrored.position, mirrored.velocity), (-axis.position, -axis.velocity));
+            }
+        }
+    }
+
+    #[test]
+    fn a_target_that_nothing_limits_is_followed_as_the_rule_says(made in any_limits(), ways in proptest::collection::vec((any::<i32>(), 0u32..32, 1u8..40), 1..40)) {
+        let (mut axis, mut ruled) = (AxisState::default(), AxisState::default());
+        let mut target = 0i32;
+        for (way, shift, ticks) in ways {
+            // To targets anywhere, and from the target on by ways of every size.
+            target = if shift < 4 { way >> shift } else { target };
+            for _ in 0..ticks {
+                target = if shift < 4 { target } else { target.wrapping_add(way >> shift) };
+                prop_assert_eq!(made.step(&mut axis, target), made.limited(&mut ruled, target));
+                prop_assert_eq!(axis, ruled);
             }
         }
     }
