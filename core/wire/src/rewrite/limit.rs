@@ -228,7 +228,7 @@ fn within(value: i32, magnitude: i32) -> i32 {
 
 /// Whether a value is within ± a magnitude, 0…2³⁰.
 #[inline(always)]
-const fn is_within(value: i32, magnitude: i32) -> bool {
+fn is_within(value: i32, magnitude: i32) -> bool {
     value.wrapping_add(magnitude) as u32 <= (magnitude as u32).wrapping_shl(1)
 }
 
