@@ -6,6 +6,7 @@ use truepath_core::identify::Observation;
 use truepath_core::job::LawName;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::length::Remark;
+use truepath_ground::units::real;
 use truepath_job::job::Route;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
@@ -125,7 +126,7 @@ pub fn learn_every(
         refuse_feeds(wall.pass)?;
         let part = Part::new(wall.history.next_number(), wall.measurement, Some(wall.history.next.correction.clone()))?;
         wall.history.refuse_known(&part)?;
-        parts.push(part);
+        parts.push(Part { cutter_from: wall.history.next.cutter_from, ..part });
     }
     let passes = as_told(walls, &parts)?;
     let walls: Vec<CorrectedWall> =
@@ -146,7 +147,8 @@ pub fn learn_every(
         let Some(newest) = earlier.pop() else { continue };
         let told = &mut |share| progress(0.5 * (at as f64 + share) / count);
         let promised = wall.history.next.promised();
-        let update = update(wall.pass, path, earlier, newest, &companions, &promised, told)?;
+        let next = (&promised[..], wall.history.is_before_a_new_cutter());
+        let update = update(wall.pass, path, earlier, newest, &companions, next, told)?;
         part.set_aside = update.set_aside;
         let mut texts = wall.remarks.to_vec();
         texts.extend_from_slice(update.verdict.remarks());
@@ -161,7 +163,11 @@ pub fn learn_every(
         let observations = update.joint.observations.last().cloned().unwrap_or_default();
         let request = DesignRequest { law: Law::Model, beside: &update.beside, kept: update.kept.as_deref() };
         let remarks = Remarks::of(wall.measurement, texts, MeasuredPart::Corrected);
-        let known = Identification { core: update.joint.core, observations };
+        let mut known = Identification { core: update.joint.core, observations };
+        if let Some(level) = update.new_cutter.filter(|_| update.kept.is_none()) {
+            // Force and compliance have one scale.
+            known.core.fit.parameters = known.core.fit.parameters.with_force(real(level.mean));
+        }
         identified.push(IdentifiedWall { pass: wall.pass, path, identified: known, request, remarks });
     }
     let later = &mut |share| progress(0.5 + 0.5 * share);
@@ -172,7 +178,9 @@ pub fn learn_every(
         let left = points.iter().zip(&update.joint.observations).filter(|(part, _)| !part.nodes.is_empty());
         let left: Vec<&[Observation]> = left.map(|(_, left)| left.as_slice()).collect();
         let floor = corrected.summary.floor.shown_by(&left);
-        let corrected = CorrectedPass { summary: corrected.summary.with_floor(floor), ..corrected };
+        // The parts that were cut are those of their own level.
+        let identified = Identification { core: update.joint.core, ..corrected.identified };
+        let corrected = CorrectedPass { summary: corrected.summary.with_floor(floor), identified, ..corrected };
         let history = wall.history.with(part, &corrected);
         Learned { corrected, history, verdict: update.verdict }
     });

@@ -194,6 +194,8 @@ impl HistoryRows {
                 points,
                 correction: part.correction.as_deref().map(of_json).transpose()?,
                 set_aside: part.set_aside,
+                // A history with new cutters is kept as its file is.
+                cutter_from: None,
             })
         };
         let next = serde_json::json!({

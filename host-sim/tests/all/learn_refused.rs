@@ -131,6 +131,35 @@ fn a_part_may_be_touched_after_others_that_were_not_and_never_before_one_that_wa
 }
 
 #[test]
+fn a_new_cutter_is_designed_for_said_and_remembered() {
+    let (_guard, folder) = copy();
+    edit(&folder.join("job.toml"), "[tool]\n", "[tool]\nparts_cut = 3\n");
+    let learned = |from: &str, out: &str, new_cutter| {
+        let options = learn::Options {
+            job: folder.join("job.toml"),
+            probe: Some(folder.join("part-2.txt")),
+            new_cutter,
+            from: folder.join(from),
+            output: folder.join(out),
+            ..learn::Options::default()
+        };
+        learn::run(&options, &mut |_| ()).unwrap()
+    };
+    let (plain, new) = (learned("first", "plain", false), learned("first", "new", true));
+    let said = |summary: &LearnSummary| {
+        summary.correct.warnings.iter().find(|said| said.contains("the next correction is for a new cutter")).cloned()
+    };
+    assert!(said(&plain).is_none());
+    assert!(said(&new).is_some_and(|said| said.contains("than part 2, ± ")), "{:?}", new.correct.warnings);
+    // What the new cutter leaves open is part of what is promised; the part that was cut is judged as before.
+    assert!(new.correct.max_sigma_mm > plain.correct.max_sigma_mm);
+    assert_eq!(new.whole_contour_error_mm, plain.whole_contour_error_mm);
+    let history = |name: &str| fs::read_to_string(folder.join(name).join("history.json")).unwrap();
+    assert!(history("new").contains("\"cutter_from\": 3") || history("new").contains("\"cutter_from\":3"));
+    assert!(!history("plain").contains("cutter_from"), "what is not said changes no file");
+}
+
+#[test]
 fn a_folder_without_a_history_or_with_a_broken_one_is_refused() {
     let (_guard, folder) = copy();
     edit(&folder.join("first/history.json"), "\"version\":1", "\"version\":9");

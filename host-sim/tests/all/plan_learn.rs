@@ -150,6 +150,7 @@ fn what_cannot_be_learned_from_is_named_and_nothing_is_written() {
     refused("--probe first/probe.txt --from plan -o out", "Q003");
     refused("--probe second/probe.txt --from plan -o plan", "Q005");
     refused("--probe second/probe.txt --from plan --route coprocessor -o out", "C001");
+    refused("--probe second/probe.txt --from plan --new-cutter -o out", "C001");
     fs::create_dir(desk.path().join("stray")).expect("a folder");
     desk.write("stray/planned.nc", "");
     refused("--probe second/probe.txt --from stray -o out", "Q001");

@@ -10,7 +10,7 @@ use truepath_ground::units::{float, mm, nm, rounded};
 use super::allowance::Allowance;
 use super::evidence::{Factored, Task, discrepancy};
 use super::feature::{Feature, Sensitivity};
-use super::kernel::{Extent, Kernel, Pair};
+use super::kernel::{Extent, Kernel, Pair, SIZE};
 use super::nominal::{Nominal, by_stock, stock_sensitivities, with_stock};
 use super::points::{Points, Row, SHARED, WithPlace};
 
@@ -156,6 +156,18 @@ impl Along {
         repeat: Vec::new(),
         by_load: ByLoad::NONE,
     };
+
+    /// The same before a part whose level of force over that of the last has a standard deviation of its own, natural logarithm.
+    #[must_use]
+    pub fn of_next_level(self, sigma: f64) -> Self {
+        let more = if self.by_load.level > 0.0 { (sigma / self.by_load.level).powi(2) } else { 0.0 };
+        let scaled = |repeat: &Offset| {
+            let of_level = mm(*repeat).powi(2) - SIZE.powi(2);
+            nm((of_level.max(0.0) * more + SIZE.powi(2)).sqrt())
+        };
+        let repeat = self.repeat.iter().map(scaled).collect();
+        Self { repeat, by_load: ByLoad { level: sigma, ..self.by_load }, ..self }
+    }
 
     /// A path in the stock that is expected, in a buffer, and what is beside a machine that cuts it.
     pub fn in_stock<'a>(&self, path: &Path<'a>, buffer: &'a mut Vec<Sample>) -> (Path<'a>, Self) {

@@ -49,7 +49,7 @@ pub struct Kernel {
 /// Level of force of one part against another by its blank.
 const BLANK: f64 = 0.01;
 /// Walk of the cutter's size from part to part, mm.
-const SIZE: f64 = 0.001;
+pub(super) const SIZE: f64 = 0.001;
 /// Parts after which a walk goes no farther: cutters are replaced.
 const LONGEST: u32 = 100;
 /// Engagements nearer than this are alike, rad.

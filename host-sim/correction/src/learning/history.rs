@@ -40,6 +40,9 @@ pub struct History {
     /// The number of the part that is measured next, where it is [said](Self::of_part).
     #[serde(skip)]
     said: Option<u32>,
+    /// Whether the part after that is cut with a [new cutter](Self::before_a_new_cutter).
+    #[serde(skip)]
+    new_cutter: bool,
 }
 
 /// A measured part.
@@ -58,6 +61,9 @@ pub struct Part {
     pub correction: Option<Nodes>,
     /// Whether fits leave it out: it came out worse, and the model cannot tell why.
     pub set_aside: bool,
+    /// The first part that its cutter has cut; absent for the cutter of part 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cutter_from: Option<u32>,
 }
 
 /// The correction of the next part, and what it promises.
@@ -72,6 +78,9 @@ pub struct Next {
     pub sigma_nm: Vec<i64>,
     /// The files it was written to.
     pub files: Vec<WrittenFile>,
+    /// The first part that the cutter it is cut with has cut; absent for that of part 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cutter_from: Option<u32>,
 }
 
 /// A file that holds a correction.
@@ -91,17 +100,20 @@ impl History {
     /// Internal, when the points cannot be held.
     pub fn first(pass: &Pass, measurement: &Measurement, corrected: &CorrectedPass) -> Result<Self, Failure> {
         let part = Part::new(1, measurement, None)?;
-        Ok(Self { version: VERSION, facts: Facts::of(pass), parts: vec![part], next: Next::of(corrected), said: None })
+        let (facts, next) = (Facts::of(pass), Next::of(corrected, None));
+        Ok(Self { version: VERSION, facts, parts: vec![part], next, said: None, new_cutter: false })
     }
 
     /// After one more part.
     #[must_use]
     pub fn with(&self, part: Part, corrected: &CorrectedPass) -> Self {
+        let cutter_from = if self.new_cutter { Some(part.number.saturating_add(1)) } else { part.cutter_from };
         let mut parts = self.parts.clone();
         parts.push(part);
         let dropped = parts.len().saturating_sub(MOST_PARTS);
         parts.drain(..dropped);
-        Self { version: VERSION, facts: self.facts.clone(), parts, next: Next::of(corrected), said: None }
+        let next = Next::of(corrected, cutter_from);
+        Self { version: VERSION, facts: self.facts.clone(), parts, next, said: None, new_cutter: false }
     }
 
     /// Reads the file.
@@ -164,6 +176,17 @@ impl History {
         }
     }
 
+    /// The same, where the part after the one that is measured next is cut with a new cutter, or is not.
+    #[must_use]
+    pub fn before_a_new_cutter(self, new_cutter: bool) -> Self {
+        Self { new_cutter, ..self }
+    }
+
+    /// Whether the part whose correction is designed next is cut with a new cutter.
+    pub const fn is_before_a_new_cutter(&self) -> bool {
+        self.new_cutter
+    }
+
     /// CRC-32 of the files that hold the correction of the next part.
     fn written(&self) -> impl Iterator<Item = u32> + '_ {
         self.next.files.iter().filter_map(|file| u32::from_str_radix(&file.crc32, 16).ok())
@@ -219,6 +242,7 @@ impl Part {
             points: measurement.observations()?.iter().map(|o| Point::of(o, measurement.noise)).collect(),
             correction,
             set_aside: false,
+            cutter_from: None,
         })
     }
 }
@@ -232,7 +256,7 @@ impl Part {
 }
 
 impl Next {
-    fn of(corrected: &CorrectedPass) -> Self {
+    fn of(corrected: &CorrectedPass, cutter_from: Option<u32>) -> Self {
         let Correction { nodes, predicted, sigma, wanted, .. } = &corrected.correction;
         let file = |name: &str, bytes: &Option<Vec<u8>>| {
             bytes.as_ref().map(|b| WrittenFile { name: name.to_owned(), crc32: format!("{:08x}", crc32(b)) })
@@ -243,6 +267,7 @@ impl Next {
             predicted_nm: differences(predicted.iter().map(|p| p.after.aim(wanted.target, None).nm())),
             sigma_nm: differences(sigma.iter().map(|s| s.nm())),
             files: files.into_iter().flatten().collect(),
+            cutter_from,
         }
     }
 

@@ -30,6 +30,8 @@ pub struct PartPoints {
     pub nodes: Vec<Node>,
     /// Standard deviation of one reading.
     pub noise: Offset,
+    /// The first part that its cutter has cut, as its [`Part`] has it.
+    pub cutter_from: Option<u32>,
 }
 
 impl From<PartPoints> for Told {
@@ -60,6 +62,9 @@ pub struct Beside {
     pub along: Along,
 }
 
+/// Steps of the walks of force and size by which another cutter counts.
+const CHANGE: u32 = 10;
+
 /// Pairs of a part have numbers below; those of different parts stay apart.
 const PAIRS: u32 = 1 << 16;
 /// Standard deviation of a half whose other half is not known: it tells nothing.
@@ -82,7 +87,16 @@ impl PartPoints {
             o.noise = hypot_nm(o.noise, cancelled.scaled(MODEL_SHARE));
             o.pair().map_or(o, |pair| o.paired(part.number.wrapping_mul(PAIRS).wrapping_add(pair)))
         });
-        Some(Self { number: part.number, observations: observed.collect(), nodes, noise })
+        let (number, cutter_from) = (part.number, part.cutter_from);
+        Some(Self { number, observations: observed.collect(), nodes, noise, cutter_from })
+    }
+
+    /// How many parts its cutter had cut before it, where that of part 1 had cut so many before that.
+    pub(super) fn age(&self, cut_before: u32) -> u32 {
+        match self.cutter_from {
+            Some(first) => self.number.saturating_sub(first),
+            None => self.number.saturating_sub(1).saturating_add(cut_before),
+        }
     }
 
     /// Its places: ranges of points at one arc length.
@@ -128,7 +142,7 @@ pub fn joint(
             Some((k + 1, *companion.path, points))
         });
         for (contour, path, points) in std::iter::once((0, *path, own)).chain(others) {
-            let parts_ago = newest.saturating_sub(own.number).saturating_add(1);
+            let parts_ago = newest.saturating_sub(own.number).saturating_add(1).saturating_add(changed(&parts[part..]));
             let (nodes, observations) = (&points.nodes[..], &points.observations[..]);
             cuts.push(PartCut { path, contour, part, parts_ago, nodes, observations });
         }
@@ -152,6 +166,12 @@ pub fn joint(
         }
     }
     Joint { core: found.core, observations, own, beside }
+}
+
+/// Steps that the changes of the cutter after the first of some parts count for.
+fn changed(parts: &[PartPoints]) -> u32 {
+    let changes = parts.windows(2).filter(|pair| pair[0].cutter_from != pair[1].cutter_from).count();
+    CHANGE.saturating_mul(changes as u32)
 }
 
 /// The parts of a contour and of its companions, where a half of a pair tells nothing whose other half is in none of them: a part that

@@ -9,6 +9,7 @@
 //! | places left out of a first fit | `holdout` |
 //! | whether a part was cut with the correction it is said to be cut with, if any | `uncorrected` |
 //! | whether the newest part came out worse | `monitor` |
+//! | what a new cutter will need | `cutter` |
 //! | all of it, to the next correction | [`update()`] |
 //!
 //! A correction is always the whole one, written into the original program: corrections are never added up, so applying
@@ -25,6 +26,7 @@
 //! | Q007 | points of a part that no correction was applied to |
 //! | Q008 | points of a part that a correction was applied to, where none is expected |
 
+mod cutter;
 mod facts;
 mod history;
 mod holdout;
@@ -37,6 +39,7 @@ mod uncorrected;
 mod update;
 mod verdict;
 
+pub use cutter::Level;
 pub use facts::Facts;
 pub use history::{HISTORY, History, MOST_PARTS, Next, Part, WrittenFile};
 pub use holdout::Residuals;

@@ -4,9 +4,11 @@ use truepath_core::correct::Node;
 use truepath_core::cut::Path;
 use truepath_core::units::Offset;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::length::Remark;
 use truepath_ground::units::float;
 use truepath_job::pass::Pass;
 
+use super::cutter::{Level, new_cutter};
 use super::holdout::{Holdout, Residuals};
 use super::joint::{Companion, Joint, PartPoints, joint};
 use super::monitor::Monitor;
@@ -22,6 +24,8 @@ pub struct Update {
     pub joint: Joint,
     /// What is beside the deflection that the model predicts, along the contour.
     pub beside: Along,
+    /// Level of force of the next part over that of the newest that counts, where it is cut with a new cutter.
+    pub new_cutter: Option<Level>,
     /// The correction to use again, when this part came out worse or nothing explains it.
     pub kept: Option<Vec<Node>>,
     /// Whether fits leave the part out from now on.
@@ -33,7 +37,8 @@ pub struct Update {
 /// Weight of a point that fits.
 const FITTING: f64 = 0.3;
 
-/// Learns from the newest part, beside the earlier ones; `companions` are the other contours of all of them. `promised` is the predicted error of its correction with the
+/// Learns from the newest part, beside the earlier ones; `companions` are the other contours of all of them; the next part may be cut with
+/// a new cutter. `promised` is the predicted error of its correction with the
 /// standard deviation, beside every sample. `progress` is told the share done.
 ///
 /// # Errors
@@ -44,7 +49,7 @@ pub fn update(
     earlier: Vec<PartPoints>,
     newest: PartPoints,
     companions: &[Companion<'_>],
-    promised: &[(Offset, Offset)],
+    (promised, is_new): (&[(Offset, Offset)], bool),
     progress: &mut dyn FnMut(f64),
 ) -> Result<Update, Failure> {
     let before = joint(pass, path, &earlier, companions, None, &mut |share| progress(0.3 * share));
@@ -90,5 +95,30 @@ pub fn update(
     let beside = beside.map(|beside| beside.along).unwrap_or_default();
     verdict.cut_with(level);
     verdict.say(moved);
-    Ok(Update { joint: chosen, beside, kept, set_aside, verdict })
+    if set_aside {
+        parts.pop();
+    }
+    let new_cutter = is_new.then(|| new_cutter(&parts, &chosen.own, pass.job.parts_cut));
+    verdict.say(new_cutter.map(|level| before_a_new_cutter(&parts, level, kept.is_some())));
+    let beside = match new_cutter {
+        Some(level) => beside.of_next_level(level.sigma),
+        None => beside,
+    };
+    Ok(Update { joint: chosen, beside, new_cutter, kept, set_aside, verdict })
+}
+
+/// What the correction of a part that is cut with a new cutter is designed for.
+fn before_a_new_cutter(parts: &[PartPoints], level: Level, is_kept: bool) -> Remark {
+    let newest = parts.last().map_or(0, |part| part.number);
+    if is_kept {
+        return format!("the next correction is one that was cut before: it is not for a new cutter, as part {newest} is the last that is understood").into();
+    }
+    let percent = 100.0 * level.mean.exp_m1();
+    let more = if percent < 0.0 { "less" } else { "more" };
+    let sigma = 200.0 * level.sigma;
+    format!(
+        "the next correction is for a new cutter, {:.0} % {more} force than part {newest}, ± {sigma:.0} % (2 sigma)",
+        percent.abs()
+    )
+    .into()
 }

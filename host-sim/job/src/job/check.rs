@@ -88,6 +88,8 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
         None if open.names_mill() => root.section_of("tool", &nothing),
         None => return Err(root.missing_section("tool", "diameter_mm and teeth")),
     };
+    let life = "count the parts that this cutter had cut before the first one that is learned from";
+    let parts_cut = tool_section.whole("parts_cut", Limits::within("0", "100000", ""), life)?.unwrap_or(0);
     let (tool, shank, cutters) = tool(&source, &tool_section, folder, &open, &mut assumed)?;
     let features = features(&source, &root, tool.diameter)?;
     let pocket = root.section("pocket")?.map(|section| pocket(&section)).transpose()?;
@@ -161,6 +163,7 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
         store,
         pocket,
         shank,
+        parts_cut,
         surface,
         stock_probe,
         roughing,

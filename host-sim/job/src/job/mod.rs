@@ -97,6 +97,8 @@ pub struct JobFile {
     pub pocket: Option<PocketTable>,
     /// The cutter's shape as a beam, beside stick-out and material.
     pub shank: Shank,
+    /// Parts that the cutter had cut before the first one that is learned from, 0…100,000.
+    pub parts_cut: u32,
     /// The actual surface of the stock, as a path that can be opened; its allowance follows from it.
     pub surface: Option<PathBuf>,
     /// The file of touches of the stock before the pass, as a path that can be opened.

@@ -67,6 +67,11 @@ const MEANINGS: &[(&str, &str, &str)] = &[
         "0, all of it towards a tooth",
         "direction of the offset behind a tooth, against the order in which teeth pass",
     ),
+    (
+        "tool.parts_cut",
+        "0",
+        "parts that this cutter had cut before part 1; what [a new one](learning.md#a-new-cutter) will need follows",
+    ),
     ("tool.runout_from", "none", "in place of both: a file that `truepath forces` wrote, relative to this file"),
     ("tool.teeth", "those of a comment of the program", "number of teeth"),
     ("tool.helix_deg", "35", "helix angle"),

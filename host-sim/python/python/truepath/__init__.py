@@ -256,6 +256,7 @@ def learn(
     *,
     dimensions: Optional[AnyPath] = ...,
     part: Optional[int] = ...,
+    new_cutter: bool = ...,
     store: Optional[AnyPath] = ...,
     sign: Optional[AnyPath] = ...,
     route: Optional[Route] = ...,
@@ -274,6 +275,7 @@ def learn(
     *,
     dimensions: Optional[AnyPath] = None,
     part: Optional[int] = None,
+    new_cutter: bool = False,
     replan: bool = False,
     store: Optional[AnyPath] = None,
     sign: Optional[AnyPath] = None,
@@ -292,6 +294,7 @@ def learn(
             program was written (:meth:`Plan.read` reads that of a folder).
         touches, dimensions: what was measured on that part; see :func:`correct`. Of planned passes touches.
         part: number of that part in the order they were cut, where those between were not touched.
+        new_cutter: the next part is cut with a new cutter: its correction is for the force that the parts say a new one needs.
         replan: of planned passes: search for passes anew, instead of designing the same ones anew.
         store, sign, route, tolerance_mm, feature, depth, force_data, progress: as of :func:`correct`.
 
@@ -306,6 +309,7 @@ def learn(
         _written(call, route, tolerance_mm, sign)
         call.says("--from", _folder_of(call, previous))
         call.says("--part", part)
+        call.says("--new-cutter", new_cutter)
         call.says("--replan", replan)
         call.run(_truepath.learn)
         files = call.files()

@@ -52,6 +52,9 @@ pub struct Options {
     /// tells how far the cutter may have worn.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub part: Option<u32>,
+    /// The next part is cut with a new cutter: its correction is for the force that the parts say a new one needs.
+    #[arg(long)]
+    pub new_cutter: bool,
     /// Folder that truepath correct, truepath plan or truepath learn wrote that correction into.
     #[arg(long, value_name = "DIR")]
     pub from: PathBuf,
@@ -173,6 +176,10 @@ pub fn run_planned(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<L
         let help = "leave it out: a plan is learned from part after part";
         return Err(InputError::new(C001, format!("--part {part}"), "no number for planned passes", help).into());
     }
+    if options.new_cutter {
+        let help = "leave it out: the plan allows for what parts differ in; touch the part that the new cutter makes and learn from it";
+        return Err(InputError::new(C001, "--new-cutter", "no new cutter for planned passes", help).into());
+    }
     let mut job = options.said.read(&options.job)?;
     job.signer = options.sign.signer()?;
     job.override_part(&PartFlags { tolerance: options.tolerance.clone(), ..PartFlags::default() })?;
@@ -207,10 +214,13 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
         Ok([only]) => only,
         Err(walls) => {
             let to = (options.output.as_path(), options.force, options.route);
-            return several::run(options.begin.passes(walls), (&readings, &options.from, options.part), to, progress);
+            let Options { from, part, new_cutter, .. } = options;
+            let measured = several::Measured { readings: &readings, from, part: *part, new_cutter: *new_cutter };
+            return several::run(options.begin.passes(walls), &measured, to, progress);
         }
     };
     let history = history_in(&options.from, &options.from)?.of_part(options.part)?;
+    let history = history.before_a_new_cutter(options.new_cutter);
     let level = history.facts.level().filter(|_| options.said.which.pass.is_none() && pass.plan.is_some());
     let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass).cut_with(history.cut_with());
     let pass = options.begin.pass(pass);

@@ -24,13 +24,26 @@ use super::super::correction_files::{
 use super::super::history::history_in;
 use super::super::readings::Readings;
 
+/// What was measured, and where the corrections of the part are.
+pub(super) struct Measured<'a> {
+    /// What was measured of it.
+    pub(super) readings: &'a Readings,
+    /// The folder of its corrections.
+    pub(super) from: &'a FilePath,
+    /// Its number, where it is said.
+    pub(super) part: Option<u32>,
+    /// Whether the next part is cut with a new cutter.
+    pub(super) new_cutter: bool,
+}
+
 /// Learns from every contour that has a history.
 pub(super) fn run(
     walls: Vec<Pass>,
-    (readings, from, part): (&Readings, &FilePath, Option<u32>),
+    measured: &Measured<'_>,
     (output, force, route): (&FilePath, bool, Option<Route>),
     progress: &mut dyn FnMut(f64),
 ) -> Result<LearnSummary, Failure> {
+    let Measured { readings, from, part, new_cutter } = *measured;
     let (mut passes, mut histories, mut left) = (Vec::new(), Vec::new(), Vec::new());
     for pass in walls {
         let folder = from.join(contour_folder(&pass));
@@ -38,7 +51,7 @@ pub(super) fn run(
             left.push(contour_name(&pass));
             continue;
         }
-        let history = history_in(&folder, from)?.of_part(part)?;
+        let history = history_in(&folder, from)?.of_part(part)?.before_a_new_cutter(new_cutter);
         let level = history.facts.level().filter(|_| pass.job.which.pass.is_none() && pass.plan.is_some());
         let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass);
         passes.push(pass.cut_with(history.cut_with()));

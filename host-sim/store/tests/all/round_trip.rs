@@ -67,14 +67,18 @@ fn a_history_comes_back_byte_for_byte_and_only_once() {
 fn a_file_that_rows_cannot_give_back_is_kept_as_it_is() {
     let at = tempfile::tempdir().expect("a folder");
     let mut store = shown(Store::open(&file_in(at.path())));
-    // A number that no program of ours would have written: the last bit of it is another.
     let text = String::from_utf8(history(7, 2, 5)).expect("text");
-    let body = text.replacen("\"height\":0.", "\"height\":0.000000000000000000", 1);
-    let body = body.split_once(',').expect("a seal").1;
-    let sealed = truepath_sealed(body);
-    let added = add(&mut store, &folder(at.path(), "odd", &sealed), &setup());
-    assert!(shown(store.history(added[0].history)) == sealed);
-    assert_eq!(shown(store.check()), 1);
+    // A number that no program of ours would have written: the last bit of it is another. And a new cutter, for which there is no column.
+    let odd = text.replacen("\"height\":0.", "\"height\":0.000000000000000000", 1);
+    let new_cutter = text.replacen("\"files\":", "\"cutter_from\":3,\"files\":", 1);
+    for (kept, body) in (1..).zip([odd, new_cutter]) {
+        assert!(body != text);
+        let body = body.split_once(',').expect("a seal").1;
+        let sealed = truepath_sealed(body);
+        let added = add(&mut store, &folder(at.path(), &format!("kept-{kept}"), &sealed), &setup());
+        assert!(shown(store.history(added[0].history)) == sealed);
+        assert_eq!(shown(store.check()), kept);
+    }
 }
 
 /// A file with its checksum before it.

@@ -85,3 +85,48 @@ fn a_lot_that_cuts_harder_is_learned_from_the_first_part_that_is_touched() {
         "{left:?}"
     );
 }
+
+/// Parts of a cutter that wears by 4 % each, touched and learned from, then one of a new cutter: what it leaves, and what the remarks say, by
+/// whether that it is new is said.
+fn of_a_new_cutter(is_said: bool) -> (f64, String) {
+    let pass = corner();
+    let (mut program, mut history): (Option<Vec<u8>>, Option<History>) = (None, None);
+    let mut said = String::new();
+    let worn = [1.0, 1.04, 1.08, 1.12];
+    for (seed, force) in (300..).zip(worn) {
+        let measurement = touched(&pass, &cut(&pass, force, seed, program.as_deref()));
+        let Some(known) = history.take() else {
+            let first = shown(correct_pass(&pass, &measurement, &[], &[Route::Program], &mut |_| ()));
+            history = Some(shown(History::first(&pass, &measurement, &first)));
+            program = first.program;
+            continue;
+        };
+        let known = known.before_a_new_cutter(is_said && force == worn[worn.len() - 1]);
+        let learned = shown(learn(&pass, &known, &measurement, &[], &[Route::Program], &mut |_| ()));
+        said = learned.verdict.remarks().iter().map(|said| &**said).collect::<Vec<_>>().join("\n");
+        history = Some(learned.history);
+        program = learned.corrected.program;
+    }
+    // The new cutter itself: a little sharper than the first was.
+    let fifth = cut(&pass, 0.99, 310, program.as_deref());
+    let left = fifth.score().max_error_mm;
+    let known = history.expect("a history");
+    assert_eq!(known.next.cutter_from, is_said.then_some(5));
+    let learned = shown(learn(&pass, &known, &touched(&pass, &fifth), &[], &[Route::Program], &mut |_| ()));
+    let sixth = cut(&pass, 1.03, 311, learned.corrected.program.as_deref()).score().max_error_mm;
+    println!("{is_said}: part 5 {left:.4}, part 6 {sixth:.4} mm; {said}");
+    assert!(!learned.verdict.rolled_back && sixth < 0.04, "{sixth}");
+    assert_eq!(learned.history.next.cutter_from, known.next.cutter_from);
+    (left, said)
+}
+
+#[test]
+#[ignore = "slow: more than nine seconds of processor time"]
+fn a_correction_for_a_new_cutter_is_for_the_force_that_one_needs() {
+    let ((untold, _), (told, said)) = (of_a_new_cutter(false), of_a_new_cutter(true));
+    assert!(untold > 0.05 && told < 0.4 * untold, "{untold} {told}");
+    assert!(
+        said.contains("the next correction is for a new cutter") && said.contains("% less force than part 4"),
+        "{said}"
+    );
+}
