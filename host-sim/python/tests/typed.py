@@ -17,7 +17,7 @@ def corrected(folder: Path, touches: npt.NDArray[np.float64]) -> float:
         print(error.code, error.file, line, error.column, error.hint)
         return 0.0
     correction.save(folder / "out")
-    better: truepath.Correction = truepath.learn(job, correction, folder / "probe.txt", part=2)
+    better: truepath.Correction = truepath.learn(job, correction, folder / "probe.txt", part=2, new_cutter=True)
     trace = truepath.simulate(job, folder / "plant.toml", corrected=better)
     displacement: npt.NDArray[np.float64] = trace.displacement_mm
     compliance: truepath.Parameter = truepath.identify(job, [[27.0, 50.0, -10.0]]).parameters["compliance"]
