@@ -151,6 +151,8 @@ fn a_new_cutter_is_designed_for_said_and_remembered() {
     };
     assert!(said(&plain).is_none());
     assert!(said(&new).is_some_and(|said| said.contains("than part 2, ± ")), "{:?}", new.correct.warnings);
+    let expected = new.verdict.new_cutter.expect("what is expected of it");
+    assert!(plain.verdict.new_cutter.is_none() && expected.sigma > 0.03 && expected.force_change.abs() < 0.1);
     // What the new cutter leaves open is part of what is promised; the part that was cut is judged as before.
     assert!(new.correct.max_sigma_mm > plain.correct.max_sigma_mm);
     assert_eq!(new.whole_contour_error_mm, plain.whole_contour_error_mm);

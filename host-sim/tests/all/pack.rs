@@ -16,7 +16,7 @@ fn story() -> Workplace {
     desk.call("simulate job.toml --plant plant.toml --touch verify.nc -o first");
     desk.call("correct job.toml --probe first/probe.txt -o out");
     desk.call("simulate job.toml --plant plant.toml --program out/corrected.nc --touch verify.nc -o second");
-    desk.call("learn job.toml --probe second/probe.txt --from out -o next");
+    desk.call("learn job.toml --probe second/probe.txt --from out -o next --new-cutter");
     desk.call("simulate job.toml --plant plant.toml --program next/corrected.nc --touch verify.nc -o third");
     desk
 }

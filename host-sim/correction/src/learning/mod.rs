@@ -49,4 +49,4 @@ pub use nodes::Nodes;
 pub use points::Point;
 pub use uncorrected::{refuse_corrected, refuse_uncorrected};
 pub use update::{Update, update};
-pub use verdict::{Promise, UnmodelledError, UsedAgain, Verdict};
+pub use verdict::{NewCutter, Promise, UnmodelledError, UsedAgain, Verdict};

@@ -14,7 +14,7 @@ use super::joint::{Companion, Joint, PartPoints, joint};
 use super::monitor::Monitor;
 use super::moved::moved;
 use super::uncorrected::refuse_uncorrected;
-use super::verdict::{Promise, UnmodelledError, Verdict};
+use super::verdict::{NewCutter, Promise, UnmodelledError, Verdict};
 use crate::discrepancy::Along;
 
 /// What follows for the next part.
@@ -99,6 +99,7 @@ pub fn update(
         parts.pop();
     }
     let new_cutter = is_new.then(|| new_cutter(&parts, &chosen.own, pass.job.parts_cut));
+    verdict.new_cutter = new_cutter.map(NewCutter::of);
     verdict.say(new_cutter.map(|level| before_a_new_cutter(&parts, level, kept.is_some())));
     let beside = match new_cutter {
         Some(level) => beside.of_next_level(level.sigma),

@@ -5,8 +5,9 @@ use truepath_core::cut::Path;
 use truepath_core::units::Offset;
 use truepath_ground::hypotenuse::hypot;
 use truepath_ground::length::{Remark, Unit};
-use truepath_ground::units::mm;
+use truepath_ground::units::{mm, rounded};
 
+use super::cutter::Level;
 use super::holdout::Residuals;
 use super::joint::{Beside, PartPoints};
 use super::monitor::{Monitor, PartError};
@@ -28,6 +29,9 @@ pub struct Verdict {
     pub earlier_parts: Vec<PartError>,
     /// Share by which it was cut with more force than the part before, as the points of both have it.
     pub force_change: f64,
+    /// What the next part is expected to need over this one, where it is said to be cut with a new cutter; else absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub new_cutter: Option<NewCutter>,
     /// What was promised for it.
     pub promise: Promise,
     /// Places that a first fit has not seen; absent when fewer than four were touched.
@@ -44,6 +48,21 @@ pub struct Verdict {
     /// Why, and other remarks on the part.
     #[serde(skip)]
     remarks: Vec<Remark>,
+}
+
+/// The force that a new cutter needs over that of the newest part that counts.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
+pub struct NewCutter {
+    /// Share by which it is more.
+    pub force_change: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+}
+
+impl NewCutter {
+    pub(super) fn of(level: Level) -> Self {
+        Self { force_change: rounded(level.mean.exp_m1(), 9), sigma: rounded(level.sigma, 9) }
+    }
 }
 
 /// What a part was cut with and the next one is cut with again.
@@ -174,6 +193,7 @@ impl Verdict {
             previous_error_mm: before,
             earlier_parts,
             force_change: 0.0,
+            new_cutter: None,
             promise,
             holdout_residual_mm: holdout,
             residual: None,

@@ -262,11 +262,13 @@ impl Place {
                     let from = then.join(from);
                     let output = output.clone();
                     let part = part_of(story, step);
+                    let new_cutter = of_summary(story, step, "new_cutter").is_some();
                     let options = learn::Options {
                         job,
                         probe,
                         dimensions,
                         part,
+                        new_cutter,
                         from,
                         output,
                         route,
