@@ -4,9 +4,7 @@ use crate::corner;
 use crate::process::Bench;
 use corner::*;
 use proptest::prelude::*;
-use truepath_model::correct::{
-    self, Band, Design, DesignWorkspace, InOrder, Node, Predicted, Profile, Scratch, Target, Update,
-};
+use truepath_model::correct::{Law, Node};
 use truepath_model::cut::*;
 use truepath_model::identify::{Cut, Fit, Observation, PredictionWorkspace, Prior, identify};
 use truepath_model::process::{Aim, ImmersionGrid, Order, Slices};
@@ -102,26 +100,7 @@ fn identified(motion: Motion, blocks: &[Block], wall: Side, prior: &Compliance, 
     let fit = identify(&cuts, &prior, &mut [], &mut observations, |_, _| Vector::ZERO, &mut lent, &mut |_| ());
     let table = ForceTable::new(fit.parameters.coefficients.size_exponent);
     let machine = fit.parameters.machine(&path, &table);
-    (fit, designed(&machine))
-}
-
-fn designed(machine: &Loop) -> Vec<Node> {
-    let (n, w) = (machine.path.count(), machine.path.working().len());
-    let mut nodes = vec![Node::default(); n];
-    let mut predicted = vec![Predicted::default(); n];
-    let wanted = Design { law: correct::Law::Model, target: Target::Mean, band: Band::WHOLE, max_gouge: None };
-    let mut workspace = DesignWorkspace {
-        states: &mut vec![State::REST; w],
-        displacements: &mut vec![Vector::ZERO; w],
-        profiles: &mut vec![Profile::default(); n],
-        updates: &mut vec![Update::default(); n],
-        scratch: &mut vec![Scratch::default(); n],
-        residual: &[],
-        beside_sigma: &[],
-        reader: InOrder,
-    };
-    correct::design(machine, &wanted, &mut nodes, &mut predicted, &mut workspace, &mut |_| ());
-    nodes
+    (fit, designed(&machine, Law::Model).0)
 }
 
 fn motions() -> impl Strategy<Value = Motion> {
@@ -196,7 +175,7 @@ fn turned_correction(angle: f64, law: WallLaw) -> Vec<(f64, f64)> {
         let (x, y) = (v.x.nm() as f64, v.y.nm() as f64);
         (cosine * x + sine * y, cosine * y - sine * x)
     };
-    designed(&machine).iter().map(|n| back(n.total())).collect()
+    designed(&machine, Law::Model).0.iter().map(|n| back(n.total())).collect()
 }
 
 #[test]

@@ -1,32 +1,10 @@
 //! What the laws of correction leave on the papers' corner, on a machine that obeys the mean law exactly.
 use crate::corner;
 use corner::*;
-use truepath_model::correct::{
-    Band, Design, DesignWorkspace, InOrder, Law, Node, PaperRatio, PaperTransfer, Predicted, Profile, Scratch, Target,
-    Update, design,
-};
+use truepath_model::correct::{Law, PaperRatio, PaperTransfer, Predicted, Profile};
 use truepath_model::cut::*;
 use truepath_units::geometry::{Block, Curve, Vector};
 use truepath_units::{Offset, Position, Real};
-
-/// What a law designs on a machine, of the states of the uncorrected cut.
-fn designed(machine: &Loop, law: Law) -> (Vec<Node>, Vec<Predicted>) {
-    let (n, w) = (machine.path.count(), machine.path.working().len());
-    let (mut nodes, mut predicted) = (vec![Node::default(); n], vec![Predicted::default(); n]);
-    let mut workspace = DesignWorkspace {
-        states: &mut vec![State::REST; w],
-        displacements: &mut vec![Vector::ZERO; w],
-        profiles: &mut vec![Profile::default(); n],
-        updates: &mut vec![Update::default(); n],
-        scratch: &mut vec![Scratch::default(); n],
-        residual: &[],
-        beside_sigma: &[],
-        reader: InOrder,
-    };
-    let wanted = Design { law, target: Target::Mean, band: Band::WHOLE, max_gouge: None };
-    design(machine, &wanted, &mut nodes, &mut predicted, &mut workspace, &mut |_| ());
-    (nodes, predicted)
-}
 
 /// Largest wall error before and after a correction by a law, mm. The paper's law takes one probe on each leg.
 fn left_by(law: &str, blocks: &[Block]) -> (f64, f64) {

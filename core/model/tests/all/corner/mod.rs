@@ -1,5 +1,8 @@
 //! The corner of P18 and P23 and the machine of the reference numbers, for tests.
 
+use truepath_model::correct::{
+    Band, Design, DesignWorkspace, InOrder, Law, Node, Predicted, Profile, Scratch, Target, Update, design,
+};
 use truepath_model::cut::{
     Coefficients, Compliance, CutSetup, Envelope, ForceTable, Loop, Milling, Path, Runout, Sample, State, WallLaw,
 };
@@ -82,4 +85,22 @@ pub fn wall_errors(machine: &Loop, states: &[State], heights: i64) -> Vec<f64> {
 }
 pub fn machine<'a>(path: &'a Path<'a>, table: &'a ForceTable, compliance: Compliance) -> Loop<'a> {
     Loop { path, table, coefficients: coefficients(), compliance, undersize: Offset::ZERO }
+}
+/// The correction that a law designs for a machine, and what is expected of it, beside every sample.
+pub fn designed(machine: &Loop, law: Law) -> (Vec<Node>, Vec<Predicted>) {
+    let (n, w) = (machine.path.count(), machine.path.working().len());
+    let (mut nodes, mut predicted) = (vec![Node::default(); n], vec![Predicted::default(); n]);
+    let mut workspace = DesignWorkspace {
+        states: &mut vec![State::REST; w],
+        displacements: &mut vec![Vector::ZERO; w],
+        profiles: &mut vec![Profile::default(); n],
+        updates: &mut vec![Update::default(); n],
+        scratch: &mut vec![Scratch::default(); n],
+        residual: &[],
+        beside_sigma: &[],
+        reader: InOrder,
+    };
+    let wanted = Design { law, target: Target::Mean, band: Band::WHOLE, max_gouge: None };
+    design(machine, &wanted, &mut nodes, &mut predicted, &mut workspace, &mut |_| ());
+    (nodes, predicted)
 }
