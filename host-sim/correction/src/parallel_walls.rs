@@ -10,10 +10,13 @@
 //! Where walls are asked for at a few places only, the cutter's positions are found where one of them asks.
 
 use std::cell::RefCell;
+use std::ops::Range;
 
 use rayon::prelude::*;
 use rayon::{current_num_threads, join};
-use truepath_core::correct::{Band, HEIGHTS, Profile, Scratch, WallReader, begin, finish, read_slice};
+use truepath_core::correct::{
+    Again, Band, HEIGHTS, Height, Profile, Scratch, WallReader, begin, finish, read,
+};
 use truepath_core::cut::{
     Displacements, Envelope, Heights, Kept, Loop, Passage, Path, State, WallError, left_by, lowest_about,
 };
@@ -34,6 +37,9 @@ const FEW: usize = 16;
 #[derive(Clone, Debug)]
 pub struct ParallelWalls {
     rows: [Vec<Vector>; SLICES + 1],
+    /// The band of the rows, and which states have changed since.
+    band: Option<Band>,
+    moved: Vec<bool>,
     profiles: Vec<Profile>,
 }
 
@@ -41,7 +47,12 @@ impl ParallelWalls {
     /// For a path.
     pub(crate) fn of(path: &Path) -> Self {
         let row = || vec![Vector::ZERO; path.working().len()];
-        Self { rows: std::array::from_fn(|_| row()), profiles: vec![Profile::default(); path.count()] }
+        Self {
+            rows: std::array::from_fn(|_| row()),
+            band: None,
+            moved: vec![true; path.working().len()],
+            profiles: vec![Profile::default(); path.count()],
+        }
     }
 }
 
@@ -51,32 +62,45 @@ impl WallReader for ParallelWalls {
         machine: &Loop,
         from: usize,
         states: &mut [State],
+        again: Again,
         commanded: impl Fn(usize) -> Vector + Sync,
-        observe: &mut dyn FnMut(usize),
+        seen: &mut dyn FnMut(usize, bool),
     ) -> Passage {
-        let end = from + states.len();
-        let passage = run(machine, from, states, &commanded);
-        observe(end);
+        let mut moved = vec![false; states.len()];
+        let passage = run_again(machine, from, (states, again), &commanded, &mut moved);
+        for (index, moved) in (from..).zip(&moved) {
+            seen(index, *moved);
+        }
+        self.moved.iter_mut().zip(&moved).for_each(|(known, now)| *known |= now);
         passage
     }
 
     fn profile(&mut self, machine: &Loop, states: &[State], band: Band, _: &mut [Vector], profiles: &mut [Profile]) {
-        let Self { rows, profiles: others } = self;
+        let Self { rows, band: known, moved, profiles: others } = self;
+        if known.replace(band) != Some(band) {
+            moved.fill(true);
+        }
         let tip = SLICES;
         let height = |k: usize| if k == tip { Real::ZERO } else { band.at(k as i64) };
-        displace(machine, states, std::array::from_fn(height), rows.each_mut().map(Vec::as_mut_slice));
+        for stretch in stretches(moved) {
+            let rows = rows.each_mut().map(|row| &mut row[stretch.clone()]);
+            displace(machine, &states[stretch], std::array::from_fn(height), rows);
+        }
+        moved.fill(false);
+        others.copy_from_slice(profiles);
         begin(machine, profiles);
         begin(machine, others);
         let slices: Vec<(i64, &Vec<Vector>)> = (0..HEIGHTS).zip(&*rows).collect();
         let (lower, upper) = slices.split_at(SLICES / 2);
-        let read = |slices: &[(i64, &Vec<Vector>)], profiles: &mut [Profile]| {
-            slices.iter().for_each(|(slice, row)| read_slice(machine, *slice, row, profiles));
+        let each = |slices: &[(i64, &Vec<Vector>)], profiles: &mut [Profile]| {
+            slices.iter().for_each(|(slice, row)| read(machine, Height::Slice(*slice), row.as_slice(), profiles));
         };
-        join(|| read(lower, profiles), || read(upper, others));
+        join(|| each(lower, profiles), || each(upper, others));
         for (own, other) in profiles.iter_mut().zip(&*others) {
             own.join(other);
         }
-        finish(machine, &rows[tip], profiles);
+        read(machine, Height::Tip, rows[tip].as_slice(), profiles);
+        finish(machine, profiles);
     }
 
     fn each(&mut self, slots: &mut [Scratch], length: usize, work: impl Fn(usize, &mut [Scratch]) + Sync) {
@@ -97,6 +121,18 @@ pub(crate) fn displace<const N: usize>(machine: &Loop, states: &[State], heights
     join(|| displace(machine, near, heights, near_rows), || displace(machine, far, heights, far_rows));
 }
 
+/// Runs of slots that are marked.
+fn stretches(marks: &[bool]) -> Vec<Range<usize>> {
+    let (mut all, mut from) = (Vec::new(), 0);
+    for run in marks.chunk_by(|a, b| a == b) {
+        if run[0] {
+            all.push(from..from + run.len());
+        }
+        from += run.len();
+    }
+    all
+}
+
 /// As [`Loop::run`], to the last bit, on all processors.
 pub fn run(
     machine: &Loop,
@@ -104,37 +140,68 @@ pub fn run(
     states: &mut [State],
     commanded: &(impl Fn(usize) -> Vector + Sync),
 ) -> Passage {
+    let mut moved = vec![false; states.len()];
+    run_again(machine, from, (states, Again::Afresh), commanded, &mut moved)
+}
+
+/// The same with what is known of the run before. States that may have changed are marked.
+fn run_again(
+    machine: &Loop,
+    from: usize,
+    (states, again): (&mut [State], Again),
+    commanded: &(impl Fn(usize) -> Vector + Sync),
+    moved: &mut [bool],
+) -> Passage {
     let stretches = (states.len() / RUN).clamp(1, current_num_threads());
     let length = states.len().div_ceil(stretches);
-    stretch_by_stretch(machine, from, states, commanded, (length, LEAD))
+    stretch_by_stretch(machine, from, (states, again), commanded, (length, LEAD), moved)
 }
 
 /// Over stretches of a length, each from as many samples before it as `lead` says, which is less.
 fn stretch_by_stretch(
     machine: &Loop,
     from: usize,
-    states: &mut [State],
+    (states, again): (&mut [State], Again),
     commanded: &(impl Fn(usize) -> Vector + Sync),
     (length, lead): (usize, usize),
+    moved: &mut [bool],
 ) -> Passage {
     let length = length.max(1);
-    let each = |(k, states): (usize, &mut [State])| {
+    // With which deflection the stretch before each has ended, as it was: that of the last sample at which the path does not turn on the
+    // spot.
+    let ended = |slot: usize, states: &[State]| {
+        let last = (0..slot).rev().find(|slot| !machine.path.is_pivot(from + slot));
+        again.knows(last.map_or(Vector::ZERO, |last| states[last].displacement))
+    };
+    let leads: Vec<_> = (0..states.len())
+        .step_by(length)
+        .map(|at| {
+            let begins = at.saturating_sub(lead);
+            (states[begins..at].to_vec(), ended(begins, states), ended(at, states))
+        })
+        .collect();
+    type Lead = (Vec<State>, Option<Vector>, Option<Vector>);
+    let each = |(k, ((states, moved), lead)): (usize, ((&mut [State], &mut [bool]), Lead))| {
         let from = from + k * length;
-        let mut begins = Vector::ZERO;
-        if k > 0 {
-            machine.run_on(from - lead, &mut begins, &mut vec![State::REST; lead], commanded);
-        }
+        let (mut lead, before_lead, before) = lead;
+        let mut begins = before_lead.unwrap_or(Vector::ZERO);
+        machine.run_on(from - lead.len(), (&mut begins, before_lead), &mut lead, commanded, |_, _| ());
         let mut ends = begins;
-        let passage = machine.run_on(from, &mut ends, states, commanded);
+        let mark = |index: usize, has_moved| moved[index - from] = has_moved;
+        let passage = machine.run_on(from, (&mut ends, before), states, commanded, mark);
         (begins, ends, passage)
     };
-    let each: Vec<_> = states.par_chunks_mut(length).enumerate().map(each).collect();
+    let stretches = states.par_chunks_mut(length).zip(moved.par_chunks_mut(length)).zip(leads);
+    let each: Vec<_> = stretches.enumerate().map(each).collect();
     let (mut ended, mut all) = (Vector::ZERO, Passage::default());
-    for ((k, states), (begins, ends, passage)) in states.chunks_mut(length).enumerate().zip(each) {
+    let stretches = states.chunks_mut(length).zip(moved.chunks_mut(length)).enumerate();
+    for ((k, (states, moved)), (begins, ends, passage)) in stretches.zip(each) {
         if begins == ended {
             (ended, all) = (ends, all.and(passage));
         } else {
-            all = all.and(machine.run_on(from + k * length, &mut ended, states, commanded));
+            let from = from + k * length;
+            let mark = |index: usize, has_moved| moved[index - from] |= has_moved;
+            all = all.and(machine.run_on(from, (&mut ended, Some(begins)), states, commanded, mark));
         }
     }
     all
@@ -349,11 +416,28 @@ mod tests {
         let working = path.working();
         let mut whole = vec![State::REST; working.len()];
         let passage = machine.run(working.start, &mut whole, commanded);
+        // A correction that changes along two stretches, of which the second begins before a seam.
+        let changes = |index: usize| (250..300).contains(&index) || (395..420).contains(&index);
+        let refined = |index: usize| commanded(index) + Vector::from_nm(if changes(index) { 500 } else { 0 }, 0);
+        let mut after = vec![State::REST; working.len()];
+        let later = machine.run(working.start, &mut after, refined);
         // From one sample before it the loop ends otherwise, and the stretch is run again.
         for apart in [(200, 64), (150, 1), (200, 0), (5_000, 64)] {
             let mut states = vec![State::REST; working.len()];
-            assert_eq!(stretch_by_stretch(&machine, working.start, &mut states, &commanded, apart), passage);
-            assert_eq!(states, whole, "{apart:?}");
+            let mut run = |commanded: &(dyn Fn(usize) -> Vector + Sync), again, moved: &mut [bool]| {
+                let passage =
+                    stretch_by_stretch(&machine, working.start, (&mut states, again), &commanded, apart, moved);
+                (passage, states.clone())
+            };
+            let mut moved = vec![false; working.len()];
+            assert_eq!(run(&commanded, Again::Afresh, &mut moved), (passage, whole.clone()), "{apart:?}");
+            assert!(moved.iter().all(|moved| *moved), "{apart:?}");
+            assert_eq!(run(&refined, Again::AsBefore, &mut moved), (later, after.clone()), "{apart:?}");
+            for ((before, after), moved) in whole.iter().zip(&after).zip(&moved) {
+                assert!(*moved || before == after, "{apart:?}");
+            }
+            let still = moved.iter().filter(|moved| !**moved).count();
+            assert!(still > working.len() / 2, "{apart:?}: {still} of {}", working.len());
         }
     }
 }

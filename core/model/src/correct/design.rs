@@ -1,9 +1,10 @@
 //! From the identified machine to the correction beside every sample of the contour.
 
+use super::moved::Moved;
 use super::node::{Node, commanded};
 use super::paper::PaperTransfer;
 use super::profile::{Band, HEIGHTS, Profile, Target, add_residual, deepen};
-use super::reader::{InOrder, WallReader};
+use super::reader::{Again, InOrder, WallReader};
 use super::refine::{Update, refine, settle_ends};
 use super::scratch::Scratch;
 use crate::cut::{Loop, Passage, Path, State, Teeth};
@@ -106,7 +107,8 @@ pub fn design<R: WallReader>(
     let path = machine.path;
     let mut passes = 0u16;
     let mut pass = |nodes: &[Node], workspace: &mut DesignWorkspace<'_, R>, observe: &mut dyn FnMut(DesignStep<'_>)| {
-        let passage = pass(machine, wanted, nodes, workspace, &mut |share| {
+        let again = if passes == 0 { Again::Afresh } else { Again::AsBefore };
+        let passage = pass(machine, wanted, nodes, (workspace, again), &mut |share| {
             observe(DesignStep::Done { passes, permille: permille(passes, share) });
         });
         passes = passes.saturating_add(1);
@@ -180,28 +182,32 @@ fn permille(passes: u16, share: u16) -> u16 {
     (done / MOST).min(1000) as u16
 }
 
-/// One pass of the cutter with a correction: states and walls of the workspace. `observe` is told the share of the
-/// elastic loop that is done, ‰.
+/// One pass of the cutter with a correction: states and walls of the workspace, of which those stay that the correction has not changed
+/// since the pass before. `observe` is told the share of the elastic loop that is done, ‰.
 pub(super) fn pass(
     machine: &Loop,
     wanted: &Design,
     nodes: &[Node],
-    workspace: &mut DesignWorkspace<'_, impl WallReader>,
+    (workspace, again): (&mut DesignWorkspace<'_, impl WallReader>, Again),
     observe: &mut dyn FnMut(u16),
 ) -> Passage {
     let path = machine.path;
     let working = path.working();
     let by_nodes = |index| commanded(path, nodes, index);
-    let passage = workspace.reader.run(machine, working.start, workspace.states, by_nodes, &mut |index| {
+    let DesignWorkspace { states, profiles, reader, .. } = workspace;
+    let mut all = Moved::default();
+    let passage = reader.run(machine, working.start, states, again, by_nodes, &mut |index, moved| {
+        all.note(path, index, moved, profiles);
         let done = index.saturating_sub(working.start).saturating_mul(1000);
         observe(done.checked_div(working.len()).unwrap_or(0).min(1000) as u16);
     });
+    all.spread(path, profiles);
     walls(machine, wanted, workspace);
     passage
 }
 
-/// Reads the walls off the states of the workspace.
-pub(super) fn walls(machine: &Loop, wanted: &Design, workspace: &mut DesignWorkspace<'_, impl WallReader>) {
+/// Reads the walls that are not current off the states of the workspace.
+fn walls(machine: &Loop, wanted: &Design, workspace: &mut DesignWorkspace<'_, impl WallReader>) {
     let (states, displacements) = (&*workspace.states, &mut *workspace.displacements);
     workspace.reader.profile(machine, states, wanted.band, displacements, workspace.profiles);
     if wanted.max_gouge.is_some() || wanted.band != Band::WHOLE {

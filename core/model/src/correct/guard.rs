@@ -10,7 +10,7 @@
 use super::design::{Design, DesignStep, DesignWorkspace, Law, Predicted, copy, design, pass, worst};
 use super::node::Node;
 use super::profile::Profile;
-use super::reader::WallReader;
+use super::reader::{Again, WallReader};
 use super::refine::settle_ends;
 use super::scratch::Scratch;
 use super::shrinkage::{Damped, damp};
@@ -92,7 +92,7 @@ pub fn guarded_design(
     {
         round = round.saturating_add(1);
         if round == 1 {
-            passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
+            passage = pass(machine, wanted, made.nodes, (workspace, Again::Afresh), &mut |_| ());
         }
         margins(machine, belief, wanted, workspace);
         state = Deviations::Current;
@@ -115,7 +115,7 @@ pub fn guarded_design(
         made.damped = damp(machine.path, uncorrected, both, workspace.scratch, workspace.beside_sigma);
         state = if made.damped.is_none() { Deviations::Current } else { Deviations::Stale };
         if state == Deviations::Stale {
-            passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
+            passage = pass(machine, wanted, made.nodes, (workspace, Again::AsBefore), &mut |_| ());
         }
     }
     finish(machine, belief, wanted, (state, passage), made, workspace)
@@ -134,13 +134,13 @@ pub fn guarded_given(
     made.damped = None;
     workspace.profiles.fill(Profile::default());
     made.nodes.fill(Node::default());
-    pass(machine, wanted, made.nodes, workspace, &mut |_| ());
+    pass(machine, wanted, made.nodes, (workspace, Again::Afresh), &mut |_| ());
     for (p, before) in made.predicted.iter_mut().zip(workspace.profiles.iter()) {
         p.before = *before;
     }
     copy(given, made.nodes);
     copy(given, made.unguarded);
-    let passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
+    let passage = pass(machine, wanted, made.nodes, (workspace, Again::AsBefore), &mut |_| ());
     let mut state = Deviations::Stale;
     if limit(wanted).is_some() {
         margins(machine, belief, wanted, workspace);
@@ -171,7 +171,7 @@ fn finish(
             break;
         }
         lift(machine, limit, made.nodes, workspace);
-        passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
+        passage = pass(machine, wanted, made.nodes, (workspace, Again::AsBefore), &mut |_| ());
         state = Deviations::Stale;
     }
     for (p, wall) in made.predicted.iter_mut().zip(workspace.profiles.iter()) {

@@ -68,6 +68,7 @@
 mod corner;
 mod design;
 mod guard;
+mod moved;
 mod node;
 mod paper;
 mod profile;
@@ -81,8 +82,8 @@ pub use design::{Design, DesignStep, DesignWorkspace, Law, Predicted, design};
 pub use guard::{GUARD_SIGMAS, Guarded, guarded_design, guarded_given};
 pub use node::{Node, commanded};
 pub use paper::{PaperRatio, PaperTransfer};
-pub use profile::{Band, HEIGHTS, Profile, Target, add_residual, begin, finish, profile, read_slice};
-pub use reader::{InOrder, WallReader};
+pub use profile::{Band, HEIGHTS, Height, Profile, Target, add_residual, begin, finish, profile, read};
+pub use reader::{Again, InOrder, WallReader};
 pub use refine::Update;
 pub(crate) use refine::{SMOOTHED, fill_gaps, settle_ends, smooth};
 pub use scratch::Scratch;

@@ -1,6 +1,6 @@
 //! The wall error over the height of the cut, and what of it a correction aims at.
 
-use crate::cut::{Envelope, Loop, State, WallError};
+use crate::cut::{Displacements, Envelope, Loop, Sought, State, Teeth, WallError};
 use truepath_units::geometry::Vector;
 use truepath_units::{Offset, Real};
 
@@ -47,6 +47,8 @@ pub struct Profile {
     margin: u16,
     /// Whether a wall stands there; see [`Sample::on_wall`](crate::cut::Sample::on_wall).
     pub on_wall: bool,
+    /// Whether it has been read since a cutter position near it moved: only others are read.
+    is_current: bool,
 }
 
 /// Step of a [margin](Profile::margin).
@@ -101,6 +103,14 @@ impl Profile {
         let steps = margin.nm().max(0).saturating_add(MARGIN_STEP).saturating_sub(1).checked_div(MARGIN_STEP);
         self.margin = u16::try_from(steps.unwrap_or(0)).unwrap_or(u16::MAX);
     }
+    /// Whether it need not be read.
+    pub(super) const fn is_current(&self) -> bool {
+        self.is_current
+    }
+    /// Says that it need, or need not, be read.
+    pub(super) const fn set_current(&mut self, is_current: bool) {
+        self.is_current = is_current;
+    }
     /// Takes note of the error at a height of the band, but for the mean.
     pub(super) fn note(&mut self, error: Offset) {
         self.lowest = self.lowest.min(error);
@@ -111,6 +121,24 @@ impl Profile {
         let more = (self.lowest - error).nm();
         self.beneath = self.beneath.max(u32::try_from(more.max(0)).unwrap_or(u32::MAX));
     }
+    /// Takes the wall at a height beside sample `index`.
+    fn take(&mut self, height: Height, index: usize, wall: &WallError) {
+        match height {
+            Height::Slice(slice) => {
+                if let Some(slot) = self.made_by.get_mut(slice as usize) {
+                    let shift = (wall.made_by as i64).saturating_sub(index as i64);
+                    *slot = shift.clamp(i16::MIN.into(), i16::MAX.into()) as i16;
+                }
+                self.mean += wall.error;
+                self.note(wall.error);
+            }
+            Height::Tip => {
+                self.tip = wall.error;
+                self.deepen(wall.error);
+            }
+            Height::LeftOut => self.deepen(wall.error),
+        }
+    }
     /// What is left over height when the target is met: the larger distance from it.
     pub fn form_error(&self, target: Target) -> Offset {
         let zero = self.aim(target, None);
@@ -118,6 +146,9 @@ impl Profile {
     }
     /// Adds what was read of other slices.
     pub fn join(&mut self, other: &Self) {
+        if self.is_current {
+            return;
+        }
         self.mean += other.mean;
         self.lowest = self.lowest.min(other.lowest);
         self.highest = self.highest.max(other.highest);
@@ -148,55 +179,74 @@ impl Profile {
     }
 }
 
-/// Adds the wall error that parts have shown beside the model: the same at every height.
+/// Adds the wall error that parts have shown beside the model: the same at every height. The profiles that were read have then been
+/// read.
 pub fn add_residual(profiles: &mut [Profile], residual: &[Offset]) {
-    for (p, more) in profiles.iter_mut().zip(residual) {
-        p.shift(*more);
+    let more = residual.iter().copied().chain(core::iter::repeat(Offset::ZERO));
+    for (p, more) in profiles.iter_mut().zip(more).filter(|(p, _)| !p.is_current) {
+        p.shift(more);
+        p.is_current = true;
     }
 }
 
-/// Reads the profile off the wall beside each sample of the contour.
+/// Reads the profile off the wall beside each sample of the contour, where it is not current.
 ///
 /// `states` belong to the path's working range; `profiles` to the contour's own samples; `displacements` is as long
 /// as `states`.
 pub fn profile(machine: &Loop, states: &[State], band: Band, displacements: &mut [Vector], profiles: &mut [Profile]) {
     begin(machine, profiles);
     for k in 0..HEIGHTS {
-        Envelope::displace(machine, states, band.at(k), displacements);
-        read_slice(machine, k, displacements, profiles);
+        at_height(machine, (states, band.at(k)), displacements, profiles, Height::Slice(k));
     }
-    Envelope::displace(machine, states, Real::ZERO, displacements);
-    finish(machine, displacements, profiles);
+    at_height(machine, (states, Real::ZERO), displacements, profiles, Height::Tip);
+    finish(machine, profiles);
 }
 
-/// Begins to read profiles: nothing is known of the walls but where there are any.
+/// Begins to read profiles that are not current: nothing is known of these walls but where there are any.
 pub fn begin(machine: &Loop, profiles: &mut [Profile]) {
-    for (p, sample) in profiles.iter_mut().zip(machine.path.samples().iter().skip(machine.path.first())) {
+    let samples = machine.path.samples().iter().skip(machine.path.first());
+    for (p, sample) in profiles.iter_mut().zip(samples).filter(|(p, _)| !p.is_current) {
         let (margin, on_wall) = (p.margin, sample.on_wall);
         *p = Profile { margin, ..Profile::unread(on_wall) };
     }
 }
 
-/// Reads one of the [`HEIGHTS`] slices of the band off the cutter positions at its height. They do not depend on each other: read in
-/// parts and [joined](Profile::join) they are the same.
-pub fn read_slice(machine: &Loop, slice: i64, displacements: &[Vector], profiles: &mut [Profile]) {
-    read(machine, displacements, profiles, |index, p, wall| {
-        if let Some(slot) = p.made_by.get_mut(slice as usize) {
-            let shift = (wall.made_by as i64).saturating_sub(index as i64);
-            *slot = shift.clamp(i16::MIN.into(), i16::MAX.into()) as i16;
-        }
-        p.mean += wall.error;
-        p.note(wall.error);
-    });
+/// A height at which walls are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Height {
+    /// The middle of one of the [`HEIGHTS`] slices of the band.
+    Slice(i64),
+    /// The tip.
+    Tip,
+    /// One that the band leaves out, above it or below: only how deep the wall is there counts.
+    LeftOut,
 }
 
-/// Ends with the tip, by the cutter positions there, when all slices are read.
-pub fn finish(machine: &Loop, displacements: &[Vector], profiles: &mut [Profile]) {
-    read(machine, displacements, profiles, |_, p, wall| {
-        p.tip = wall.error;
-        p.deepen(wall.error);
-    });
-    for p in profiles.iter_mut() {
+/// Reads one height off the cutter positions there. Slices do not depend on each other: read in parts and [joined](Profile::join) they
+/// are the same. The tip is read when all slices are.
+pub fn read(machine: &Loop, height: Height, displacements: impl Displacements, profiles: &mut [Profile]) {
+    let path = machine.path;
+    let mut envelope = Envelope::of(path, path.working().start, displacements);
+    let mut guess = path.first();
+    for (i, p) in profiles.iter_mut().enumerate() {
+        let index = path.first().saturating_add(i);
+        if !p.on_wall {
+            continue;
+        }
+        if p.is_current {
+            // As if it had been read: the next one may be made where this one is.
+            guess = p.maker(height.slice(), index).saturating_add(1);
+            continue;
+        }
+        let Some(wall) = envelope.read(index, guess) else { continue };
+        guess = wall.made_by.saturating_add(1);
+        p.take(height, index, &wall);
+    }
+}
+
+/// Ends reading, when all heights are.
+pub fn finish(machine: &Loop, profiles: &mut [Profile]) {
+    for p in profiles.iter_mut().filter(|p| !p.is_current) {
         if !p.on_wall {
             *p = Profile { margin: p.margin, ..Profile::default() };
         }
@@ -215,25 +265,30 @@ pub(super) fn deepen(
     profiles: &mut [Profile],
 ) {
     for height in band.left_out() {
-        Envelope::displace(machine, states, height, displacements);
-        read(machine, displacements, profiles, |_, p, wall| p.deepen(wall.error));
+        at_height(machine, (states, height), displacements, profiles, Height::LeftOut);
     }
 }
 
-/// Hands the wall error at the height of cutter positions to every profile where a wall stands, with the index of its sample.
-fn read(
+/// Finds the cutter's positions at a height and reads it: all of them, or those that a profile asks for which is not current.
+fn at_height(
     machine: &Loop,
-    displacements: &[Vector],
+    (states, fraction): (&[State], Real),
+    displacements: &mut [Vector],
     profiles: &mut [Profile],
-    mut take: impl FnMut(usize, &mut Profile, &WallError),
+    height: Height,
 ) {
-    let path = machine.path;
-    let envelope = Envelope::new(path, path.working().start, displacements);
-    let mut guess = path.first();
-    for (i, p) in profiles.iter_mut().enumerate() {
-        let index = path.first().saturating_add(i);
-        let Some(wall) = envelope.error(index, guess).filter(|_| p.on_wall) else { continue };
-        guess = wall.made_by.saturating_add(1);
-        take(index, p, &wall);
+    if profiles.iter().any(Profile::is_current) {
+        let mut teeth = Teeth::BLANK;
+        read(machine, height, Sought::new(machine, states, fraction, (&mut teeth, displacements)), profiles);
+    } else {
+        Envelope::displace(machine, states, fraction, displacements);
+        read(machine, height, &*displacements, profiles);
+    }
+}
+
+impl Height {
+    /// The slice of the band whose cutter positions are next to those that make it.
+    const fn slice(self) -> i64 {
+        if let Self::Slice(slice) = self { slice } else { 0 }
     }
 }

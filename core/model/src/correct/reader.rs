@@ -8,16 +8,26 @@ use super::scratch::Scratch;
 use crate::cut::{Loop, Passage, State};
 use truepath_units::geometry::Vector;
 
+/// What is known before a pass of the cutter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Again {
+    /// Nothing: buffers hold what is left of something else.
+    Afresh,
+    /// States and walls of the pass before, by the same machine for the same design: what a command does not change is kept.
+    AsBefore,
+}
+
 /// Runs the cutter to the last bit as [`Loop::run`] does, and reads the profile of the walls off its states as [`profile`] does.
 pub trait WallReader {
-    /// As [`Loop::run`]; `observe` is told samples that it comes to, in their order.
+    /// As [`Loop::run_on`] from rest; `seen` is told the samples in their order, and whether their state may have changed.
     fn run(
         &mut self,
         machine: &Loop,
         from: usize,
         states: &mut [State],
+        again: Again,
         commanded: impl Fn(usize) -> Vector + Sync,
-        observe: &mut dyn FnMut(usize),
+        seen: &mut dyn FnMut(usize, bool),
     ) -> Passage;
 
     /// As [`profile`].
@@ -34,6 +44,13 @@ pub trait WallReader {
     fn each(&mut self, slots: &mut [Scratch], length: usize, work: impl Fn(usize, &mut [Scratch]) + Sync);
 }
 
+impl Again {
+    /// What was so in the pass before, if that is known.
+    pub fn knows<T>(self, before: T) -> Option<T> {
+        (self == Self::AsBefore).then_some(before)
+    }
+}
+
 /// One height after the other.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct InOrder;
@@ -44,10 +61,11 @@ impl<R: WallReader> WallReader for &mut R {
         machine: &Loop,
         from: usize,
         states: &mut [State],
+        again: Again,
         commanded: impl Fn(usize) -> Vector + Sync,
-        observe: &mut dyn FnMut(usize),
+        seen: &mut dyn FnMut(usize, bool),
     ) -> Passage {
-        (**self).run(machine, from, states, commanded, observe)
+        (**self).run(machine, from, states, again, commanded, seen)
     }
 
     fn profile(
@@ -72,13 +90,13 @@ impl WallReader for InOrder {
         machine: &Loop,
         from: usize,
         states: &mut [State],
+        again: Again,
         commanded: impl Fn(usize) -> Vector + Sync,
-        observe: &mut dyn FnMut(usize),
+        seen: &mut dyn FnMut(usize, bool),
     ) -> Passage {
-        machine.run(from, states, |index| {
-            observe(index);
-            commanded(index)
-        })
+        let before = again.knows(Vector::ZERO);
+        let mut guess = Vector::ZERO;
+        machine.run_on(from, (&mut guess, before), states, commanded, seen)
     }
 
     fn profile(

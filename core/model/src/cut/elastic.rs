@@ -50,8 +50,6 @@ pub struct Loop<'a> {
 /// Summary of a run of the loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Passage {
-    /// Iterations spent, all samples together.
-    pub iterations: u32,
     /// Samples at which the loop did not reach its tolerance.
     pub unsettled: u32,
     /// The largest residual.
@@ -98,7 +96,6 @@ impl Passage {
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {
-            iterations: self.iterations.saturating_add(other.iterations),
             unsettled: self.unsettled.saturating_add(other.unsettled),
             worst_residual: self.worst_residual.max(other.worst_residual),
         }
@@ -190,31 +187,39 @@ impl Loop<'_> {
     /// Runs the loop over samples `from..from + states.len()`; `commanded` gives the commanded displacement of each.
     pub fn run(&self, from: usize, states: &mut [State], commanded: impl FnMut(usize) -> Vector) -> Passage {
         let mut guess = Vector::ZERO;
-        self.run_on(from, &mut guess, states, commanded)
+        self.run_on(from, (&mut guess, None), states, commanded, |_, _| ())
     }
 
     /// The same behind samples that were run before: `guess` is the deflection with which they ended, and becomes that with which
     /// these end.
+    ///
+    /// `before` is that with which they ended when this machine left `states` here last; `None` where it has not. A state is that of a
+    /// command and a guess: where both are what they were, it is kept. `seen` is told every sample, and whether its state may have changed.
     pub fn run_on(
         &self,
         from: usize,
-        guess: &mut Vector,
+        (guess, mut before): (&mut Vector, Option<Vector>),
         states: &mut [State],
         mut commanded: impl FnMut(usize) -> Vector,
+        mut seen: impl FnMut(usize, bool),
     ) -> Passage {
         let mut passage = Passage::default();
         let mut kept = Kept::default();
         for (k, slot) in states.iter_mut().enumerate() {
             let index = from.saturating_add(k);
-            let Some((state, iterations)) = self.state(&mut kept, index, commanded(index), *guess) else { break };
-            *slot = state;
-            if iterations == 0 {
-                continue;
+            let command = commanded(index);
+            let old = *slot;
+            if before != Some(*guess) || old.commanded != command {
+                let Some((state, _)) = self.state(&mut kept, index, command, *guess) else { break };
+                *slot = state;
             }
-            *guess = state.displacement;
-            passage.iterations = passage.iterations.saturating_add(iterations);
-            passage.unsettled = passage.unsettled.saturating_add(u32::from(state.residual > UNSETTLED));
-            passage.worst_residual = passage.worst_residual.max(state.residual);
+            seen(index, before.is_none() || *slot != old);
+            passage.unsettled = passage.unsettled.saturating_add(u32::from(slot.residual > UNSETTLED));
+            passage.worst_residual = passage.worst_residual.max(slot.residual);
+            if !self.path.is_pivot(index) {
+                *guess = slot.displacement;
+                before = before.map(|_| old.displacement);
+            }
         }
         passage
     }

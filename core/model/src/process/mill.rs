@@ -83,7 +83,6 @@ struct March<'m> {
 /// What a place asked of the cutter.
 struct Settled {
     residual: Offset,
-    iterations: u32,
     force: (Real, Real),
     leaves: Real,
     feed_per_tooth: Real,
@@ -192,7 +191,6 @@ impl<'a> Mill<'a> {
             let index = working.start.saturating_add(ahead);
             let command = commanded(index);
             let Some(at) = march.settle(index, command, depths) else { break };
-            load.passage.iterations = load.passage.iterations.saturating_add(at.iterations);
             load.passage.unsettled = load.passage.unsettled.saturating_add(u32::from(at.residual > UNSETTLED));
             load.passage.worst_residual = load.passage.worst_residual.max(at.residual);
             if contour.contains(&index) {
@@ -413,7 +411,6 @@ impl<'m> March<'m> {
             self.force = Some((feed, per_tooth, force, windows));
         }
         let (_, feed_per_tooth, force, windows) = self.force.as_ref()?;
-        let mut iterations = 0u32;
         let mut look = 1;
         let (place, mut residual) = loop {
             let frame = path.frame(index, command + self.mean)?;
@@ -433,8 +430,7 @@ impl<'m> March<'m> {
                 climb: self.climb,
             };
             let push = |at| self.mill.pushed(&place, self.mill.mean_force(&place, at));
-            let (settled, left, turns) = equilibrium(self.mean, push);
-            iterations = iterations.saturating_add(turns);
+            let (settled, left) = equilibrium(self.mean, push);
             let far = (settled - self.mean).length() > LOOKED;
             self.mean = settled;
             if !far || look >= LOOKS {
@@ -449,13 +445,12 @@ impl<'m> March<'m> {
             }
             let from = if *instant == Vector::ZERO { self.mean } else { *instant };
             let push = |at| self.mill.pushed(&place, self.mill.instant_force(&place, k, at));
-            let (settled, left, turns) = equilibrium(from, push);
-            iterations = iterations.saturating_add(turns);
+            let (settled, left) = equilibrium(from, push);
             (*instant, residual) = (settled, residual.max(left));
         }
         let force = self.mill.mean_force(&place, self.mean);
         let leaves = place.depths.leaves(self.mill.grid, (self.order.first, self.mill.slices.count()));
-        Some(Settled { residual, iterations, force, leaves, feed_per_tooth: *feed_per_tooth })
+        Some(Settled { residual, force, leaves, feed_per_tooth: *feed_per_tooth })
     }
 }
 
@@ -499,9 +494,9 @@ fn crossing(a: i64, b: i64) -> Real {
     Real::from_bits((a << 32).checked_div(a.saturating_sub(b)).unwrap_or(0))
 }
 
-/// The fixed point of a push: secant steps (Anderson, depth one) from a first guess, then damped ones. Gives it, what is left
-/// unsolved, and the iterations.
-fn equilibrium(guess: Vector, mut push: impl FnMut(Vector) -> Vector) -> (Vector, Offset, u32) {
+/// The fixed point of a push: secant steps (Anderson, depth one) from a first guess, then damped ones. Gives it, and what is left
+/// unsolved.
+fn equilibrium(guess: Vector, mut push: impl FnMut(Vector) -> Vector) -> (Vector, Offset) {
     let [most, damped] = ITERATIONS;
     let mut at = guess;
     let mut before: Option<(Vector, Vector)> = None;
@@ -512,7 +507,7 @@ fn equilibrium(guess: Vector, mut push: impl FnMut(Vector) -> Vector) -> (Vector
             best = (at + residual, residual);
         }
         if residual.length_squared() < SOLVED {
-            return (best.0, residual.length(), turn);
+            return (best.0, residual.length());
         }
         let step = match before {
             Some((x0, r0)) if turn < damped => mixed(residual, residual - r0, at - x0),
@@ -522,7 +517,7 @@ fn equilibrium(guess: Vector, mut push: impl FnMut(Vector) -> Vector) -> (Vector
         before = Some((at, residual));
         at = at + step;
     }
-    (best.0, best.1.length(), most)
+    (best.0, best.1.length())
 }
 
 /// Whether a length is shorter than another, both rounded to whole nanometres.
