@@ -114,7 +114,7 @@ pub fn identify(part: Part) -> Work {
         let cuts = [fit::Cut { path: part.path, points: observations.len(), part: 0 }];
         black_box(fit::identify(
             &cuts,
-            &part.prior,
+            (&part.prior, None),
             &mut [],
             &mut observations,
             |_, _| Vector::ZERO,

@@ -37,7 +37,7 @@ pub fn identified(
     };
     let prior = pass.prior(law);
     let cuts = [Cut { path: path.with_law(law), points: observations.len(), part: 0 }];
-    let fit = identify(&cuts, &prior, &mut [], observations, uncorrected, workspace, observe);
+    let fit = identify(&cuts, (&prior, None), &mut [], observations, uncorrected, workspace, observe);
     Identified { law, prior, fit }
 }
 

@@ -17,6 +17,36 @@ const fn mul(a: i64, b: i64) -> i64 {
     products_rounded((a as i128).wrapping_mul(b as i128), Q) as i64
 }
 
+/// 1/23, 1/21 … 1 in units of 2⁻⁶⁰.
+const ODD_RECIPROCALS: [i64; 12] = [
+    50_127_021_939_428_129,
+    54_901_024_028_897_475,
+    60_680_079_189_834_051,
+    67_818_912_035_696_881,
+    76_861_433_640_456_465,
+    88_686_269_585_142_075,
+    104_811_045_873_349_725,
+    128_102_389_400_760_775,
+    164_703_072_086_692_425,
+    230_584_300_921_369_395,
+    384_307_168_202_282_325,
+    1_152_921_504_606_846_976,
+];
+
+/// `y/K·(1 + series)`, rounded. Division by a constant is a product; neither factor is above 1 by much.
+#[inline]
+fn term<const K: u64>(y: i64, series: i64) -> i64 {
+    let product = mul(y, ONE.saturating_add(series));
+    let magnitude = product.unsigned_abs().wrapping_add(K / 2).checked_div(K).unwrap_or(0) as i64;
+    if product < 0 { magnitude.wrapping_neg() } else { magnitude }
+}
+
+/// Three terms of the exponential series.
+#[inline]
+fn three<const A: u64, const B: u64, const C: u64>(y: i64, series: i64) -> i64 {
+    term::<C>(y, term::<B>(y, term::<A>(y, series)))
+}
+
 /// The binary logarithm of a positive number; −32 (the logarithm of the smallest one) for anything else.
 pub fn log2(value: Real) -> Real {
     if value <= Real::ZERO {
@@ -34,12 +64,7 @@ pub fn log2(value: Real) -> Real {
     let z =
         div_rounded((mantissa.saturating_sub(ONE) as i128) << Q, (mantissa as i128).saturating_add(ONE as i128)) as i64;
     let square = mul(z, z);
-    let mut series = 0i64;
-    let mut k = 23i64;
-    while k >= 1 {
-        series = div_rounded(ONE as i128, k as i128).saturating_add(mul(square, series) as i128) as i64;
-        k = k.saturating_sub(2);
-    }
+    let series = ODD_RECIPROCALS.iter().fold(0i64, |series, part| part.saturating_add(mul(square, series)));
     let fraction = mul(mul(z, series).saturating_mul(2), FRAC_1_LN_2);
     let whole = exponent.saturating_sub(i64::from(Real::FRACTION_BITS)) << Real::FRACTION_BITS;
     Real::from_bits(whole.saturating_add(shift_rounded(fraction as i128, Q - Real::FRACTION_BITS) as i64))
@@ -56,13 +81,13 @@ pub fn exp2(x: Real) -> Real {
     }
     let fraction = x - Real::from_int(whole as i32);
     let y = mul(shift_left(fraction), LN_2);
-    let mut series = 0i64;
-    let mut k = 17i64;
-    while k >= 1 {
-        series = div_rounded(mul(y, ONE.saturating_add(series)) as i128, k as i128) as i64;
-        k = k.saturating_sub(1);
-    }
-    let value = ONE.saturating_add(series) as i128;
+    // y/1·(1 + y/2·(1 + …)) by Horner, three terms at a time.
+    let series = three::<17, 16, 15>(y, 0);
+    let series = three::<14, 13, 12>(y, series);
+    let series = three::<11, 10, 9>(y, series);
+    let series = three::<8, 7, 6>(y, series);
+    let series = three::<5, 4, 3>(y, series);
+    let value = ONE.saturating_add(term::<1>(y, term::<2>(y, series))) as i128;
     let bits = i64::from(Q - Real::FRACTION_BITS).saturating_sub(whole);
     Real::narrow(if bits >= 0 {
         shift_rounded(value, bits.unsigned_abs() as u32)

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use truepath_core::cut::{ForceTable, Path, State, WallLaw};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{
-    Cut, EarlierPart, Observation, Parameters, PredictionWorkspace, Predictor, identify, predict, speaks_for_mean,
+    Cut, EarlierPart, Fit, Observation, Parameters, PredictionWorkspace, Predictor, identify, predict, speaks_for_mean,
 };
 use truepath_core::job::{self, ForceModel};
 
@@ -32,6 +32,8 @@ pub struct Points<'a> {
     pub earlier: &'a [EarlierPart],
     /// The points, one cut behind the other.
     pub observations: &'a [Observation],
+    /// A fit of these points, which has left them as they are, of nearly the same machine under the same law: it is gone on from there.
+    pub begin: Option<&'a Fit>,
 }
 
 /// The wall law that a job asks for; `None` leaves it to the points.
@@ -87,7 +89,7 @@ fn under(
         Places { room: cuts.iter().map(|cut| PredictionWorkspace::needed(&cut.path)).max().unwrap_or(0) };
     let prior = pass.prior(law);
     let mut observe = |permille| progress(f64::from(permille) / 1000.0);
-    let fit = identify(&cuts, &prior, &mut earlier, &mut observations, commanded, &mut predictor, &mut observe);
+    let fit = identify(&cuts, (&prior, points.begin), &mut earlier, &mut observations, commanded, &mut predictor, &mut observe);
     Found { core: job::Identified { law, prior, fit }, earlier, observations }
 }
 

@@ -18,7 +18,7 @@ use truepath_core::correct::{
     Again, Band, HEIGHTS, Height, Profile, Scratch, WallReader, begin, finish, read,
 };
 use truepath_core::cut::{
-    Displacements, Envelope, Heights, Kept, Loop, Passage, Path, State, WallError, left_by, lowest_about,
+    Displacements, Envelope, Heights, Kept, Loop, Passage, Path, State, WallError, left_by,
 };
 use truepath_core::geometry::Vector;
 use truepath_core::units::{Offset, Real};
@@ -267,7 +267,7 @@ pub(crate) struct CutWalls<'a, const N: usize> {
     states: &'a [State],
     heights: [Real; N],
     places: Vec<usize>,
-    /// For every place and height the sample about which the wall is made, and how far the cutter ends short of it.
+    /// For every place and height the sample nearest to where the wall is made, and how far the cutter ends short of it there.
     made: Vec<[Option<(usize, Offset)>; N]>,
 }
 
@@ -352,11 +352,8 @@ impl<'a, S: FnMut(usize) -> Option<State>, const N: usize> Sought<'a, S, N> {
 
     /// How far the cutter ends short of the wall beside a place at a height where it makes that about a sample.
     fn made(&mut self, place: usize, maker: usize, height: usize) -> Option<Offset> {
-        let (path, start) = (self.machine.path, self.start);
-        let mut gap =
-            |sample: usize| left_by(path, place, sample, self.displacement(sample.checked_sub(start)?, height)?);
-        let own = gap(maker)?;
-        Some(lowest_about(maker, own, gap))
+        let displacement = self.displacement(maker.checked_sub(self.start)?, height)?;
+        left_by(self.machine.path, place, maker, displacement)
     }
 }
 

@@ -14,14 +14,14 @@ use truepath_ground::length::Unit;
 use truepath_ground::units::mm;
 use truepath_job::pass::Pass;
 
-use crate::discrepancy::{PartCut, is_fitted, ln_evidence, plain};
+use crate::discrepancy::{PartCut, is_fitted, ln_evidence, plain, plain_from};
 use crate::identification::{Found as Fit, asked};
 use crate::plausible::is_possible;
 
 /// Offsets that are tried, µm, with what is believed of each (natural logarithm): most holders are good ones.
 const TRIED: [(i32, f64); 6] = [(0, -0.7), (2, -1.6), (4, -1.9), (7, -2.5), (11, -3.5), (16, -4.5)];
-/// So many of them are tried at once, whatever they say: a cutter that runs out by more is told from one that runs true by the smallest
-/// offset already, and a fit with one is the dearest part of a correction.
+/// So many of them are tried whatever they say: a cutter that runs out by more is told from one that runs true by the smallest
+/// offset already, and a fit with one is dear.
 const SMALL: usize = 2;
 /// Times that offsets half way to the neighbours of the most probable one are tried.
 const HALVINGS: usize = 2;
@@ -71,25 +71,25 @@ pub fn found(groups: &[(&Pass, Vec<PartCut<'_>>)], fits: &mut Vec<Fit>) -> Optio
     if groups.is_empty() || !groups.iter().all(|(pass, _)| is_open(pass)) {
         return None;
     }
-    let probable = |at: &(Offset, f64)| Tried::of(*at, groups).map(|(tried, _)| tried);
-    let known: Vec<(Offset, f64)> =
-        TRIED.iter().map(|(um, belief)| (Offset::from_um(i64::from(*um)), *belief)).collect();
-    let (small, large) = known.split_at(SMALL);
-    let each: Vec<(Tried, Vec<Fit>)> = small.par_iter().filter_map(|at| Tried::of(*at, groups)).collect();
-    let (mut tried, of_each): (Vec<Tried>, Vec<Vec<Fit>>) = each.into_iter().unzip();
-    *fits = tried.iter().zip(of_each).find(|(one, _)| one.offset == Offset::ZERO).map(|(_, fits)| fits)?;
-    let runs_true = *tried.iter().find(|one| one.offset == Offset::ZERO)?;
-    // A larger one only where the largest so far is the most probable.
-    for larger in large {
-        if best(&tried)?.offset != tried.last()?.offset {
+    let mut ascending = TRIED.iter().map(|(um, belief)| (Offset::from_um(i64::from(*um)), *belief));
+    let runs_true = Tried::of(ascending.next()?, groups, None)?;
+    fits.clone_from(&runs_true.fits);
+    let mut tried = vec![runs_true.clone()];
+    // A larger one only where the largest so far is the most probable; the smallest is tried whatever the points say.
+    for larger in ascending {
+        let last = tried.last()?;
+        if tried.len() >= SMALL && best(&tried)?.offset != last.offset {
             break;
         }
-        tried.push(probable(larger)?);
+        let next = Tried::of(larger, groups, Some(last))?;
+        tried.push(next);
     }
     let decisive = DECISIVE[usize::from(!runs_true.is_possible)];
-    let is_told = |best: &Tried| best.offset != Offset::ZERO && best.ln - runs_true.ln > decisive;
+    let is_told = |best: &&Tried| best.offset != Offset::ZERO && best.ln - runs_true.ln > decisive;
     best(&tried).filter(is_told)?;
     for _ in 0..HALVINGS {
+        let near = best(&tried)?;
+        let probable = |at: &(Offset, f64)| Tried::of(*at, groups, Some(near));
         let between: Vec<Tried> = beside_best(&tried)?.par_iter().filter_map(probable).collect();
         tried.extend(between);
         tried.sort_by_key(|one| one.offset);
@@ -98,8 +98,8 @@ pub fn found(groups: &[(&Pass, Vec<PartCut<'_>>)], fits: &mut Vec<Fit>) -> Optio
     Some(Found { offset: best.offset, ln_odds: best.ln - runs_true.ln })
 }
 
-fn best(tried: &[Tried]) -> Option<Tried> {
-    tried.iter().copied().max_by(|a, b| a.ln.total_cmp(&b.ln))
+fn best(tried: &[Tried]) -> Option<&Tried> {
+    tried.iter().max_by(|a, b| a.ln.total_cmp(&b.ln))
 }
 
 /// Half way from the most probable of some offsets, which ascend, to its neighbours, and what is believed there.
@@ -115,7 +115,7 @@ fn beside_best(tried: &[Tried]) -> Option<Vec<(Offset, f64)>> {
 }
 
 /// An offset that was tried.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Tried {
     offset: Offset,
     /// What is believed of it, natural logarithm.
@@ -124,16 +124,21 @@ struct Tried {
     ln: f64,
     /// Whether cutter and machine that the points then have can be.
     is_possible: bool,
+    /// The fits of the groups.
+    fits: Vec<Fit>,
 }
 
 impl Tried {
-    /// An offset, and what is believed of it, by groups of cuts.
-    fn of((offset, belief): (Offset, f64), groups: &[(&Pass, Vec<PartCut<'_>>)]) -> Option<(Self, Vec<Fit>)> {
-        let each = groups.iter().map(|(pass, cuts)| with_offset(pass, cuts, offset));
+    /// An offset, and what is believed of it, by groups of cuts; from another that was tried it is not far.
+    fn of((offset, belief): (Offset, f64), groups: &[(&Pass, Vec<PartCut<'_>>)], near: Option<&Self>) -> Option<Self> {
+        let fit = |(at, (pass, cuts)): (usize, &(&Pass, Vec<PartCut<'_>>))| {
+            with_offset(pass, cuts, offset, near.and_then(|near| near.fits.get(at)))
+        };
+        let each = groups.iter().enumerate().map(fit);
         let (lns, fits): (Vec<f64>, Vec<Fit>) = each.collect::<Option<Vec<_>>>()?.into_iter().unzip();
         let ln = belief + lns.iter().sum::<f64>();
         let is_possible = fits.iter().all(|fit| is_possible(&fit.core));
-        Some((Self { offset, belief, ln, is_possible }, fits))
+        Some(Self { offset, belief, ln, is_possible, fits })
     }
 }
 
@@ -150,14 +155,18 @@ pub fn passes(walls: &[&Pass], groups: &[(&Pass, Vec<PartCut<'_>>)]) -> (Vec<Pas
     }
 }
 
-/// How probable the points are with an offset, natural logarithm, and their fit.
-fn with_offset(pass: &Pass, cuts: &[PartCut<'_>], offset: Offset) -> Option<(f64, Fit)> {
+/// How probable the points are with an offset, natural logarithm, and their fit, which goes on from one with another offset if that is
+/// of the same law.
+fn with_offset(pass: &Pass, cuts: &[PartCut<'_>], offset: Offset, near: Option<&Fit>) -> Option<(f64, Fit)> {
     let runout = Runout { offset, behind: Real::ZERO };
     let cuts: Vec<PartCut<'_>> =
         cuts.iter().map(|cut| PartCut { path: cut.path.with_runout(runout), ..*cut }).collect();
     // The mean law knows no tooth: one that runs out is of the helical law.
     let law = if offset == Offset::ZERO { asked(pass.core.job.force.model) } else { Some(WallLaw::Helical) };
-    let found = plain(pass, law, &cuts, &mut |_| ());
+    let found = match near.filter(|near| law == Some(near.core.law)) {
+        Some(near) => plain_from(pass, near, &cuts),
+        None => plain(pass, law, &cuts, &mut |_| ()),
+    };
     Some((ln_evidence(&found, &cuts)?, found))
 }
 
@@ -167,7 +176,8 @@ mod tests {
 
     #[test]
     fn between_the_most_probable_offset_and_its_neighbours_is_looked_half_way() {
-        let tried = |um, belief, ln| Tried { offset: Offset::from_um(um), belief, ln, is_possible: true };
+        let tried =
+            |um, belief, ln| Tried { offset: Offset::from_um(um), belief, ln, is_possible: true, fits: Vec::new() };
         let nanometres = |tried: &[Tried]| {
             beside_best(tried).map(|all| all.iter().map(|(offset, _)| offset.nm()).collect::<Vec<i64>>())
         };

@@ -51,7 +51,7 @@ pub(super) fn deviations(
         }
         let displaced = parameters.machine(path, &table);
         reader.each(scratch, PIECE, |first, slots| {
-            let (mut here, mut there) = (Near::new(machine), Near::new(&displaced));
+            let (mut here, mut there) = (Near::known(machine), Near::new(&displaced));
             for (k, slot) in slots.iter_mut().enumerate() {
                 let known = slot.deviation();
                 if known.is_asked
@@ -144,11 +144,8 @@ impl Corrected<'_> {
     fn walls(&self, corrected: &Profile, machine: &mut Near<'_>, at: usize) -> Option<Profile> {
         let Design { target, band, max_gouge, .. } = *self.wanted;
         let index = machine.machine().path.first().saturating_add(at);
-        let begin = |sample: usize| {
-            let state = self.states.get(sample.checked_sub(self.from)?)?;
-            Some((state.commanded, state.displacement))
-        };
-        let mut left = |slice: i64, height: Real| machine.wall((index, corrected.maker(slice, index), height), begin);
+        let run = |sample: usize| self.states.get(sample.checked_sub(self.from)?).copied();
+        let mut left = |slice: i64, height: Real| machine.wall((index, corrected.maker(slice, index), height), run);
         let [lowest, highest] = ENDS;
         let mut wall = Profile::unread(true);
         let is_guarded = max_gouge.is_some();

@@ -58,4 +58,4 @@ pub use sample::Sample;
 pub use setup::{Coefficients, CutSetup, Helix, Milling, Runout, WallLaw};
 pub use teeth::Teeth;
 pub(crate) use wall::Sought;
-pub use wall::{Displacements, Envelope, WallError, left_by, lowest_about};
+pub use wall::{Displacements, Envelope, WallError, left_by};

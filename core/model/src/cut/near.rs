@@ -2,8 +2,7 @@
 
 use super::elastic::{Kept, Loop, State};
 use super::teeth::Teeth;
-use super::wall::{left_by, lowest_about};
-use truepath_units::geometry::Vector;
+use super::wall::left_by;
 use truepath_units::{Offset, Real};
 
 /// States of a machine at samples near each other, the last of them kept: walls beside one place, at several heights, are made by
@@ -14,6 +13,8 @@ use truepath_units::{Offset, Real};
 #[derive(Debug)]
 pub struct Near<'a> {
     machine: &'a Loop<'a>,
+    /// Whether the run that is known is its own.
+    is_known: bool,
     kept: Kept,
     teeth: Teeth,
     /// By the remainder of the number of their sample.
@@ -21,9 +22,14 @@ pub struct Near<'a> {
 }
 
 impl<'a> Near<'a> {
-    /// Of a machine, and no sample yet.
+    /// Of another machine than that of the run, and no sample yet.
     pub fn new(machine: &'a Loop<'a>) -> Self {
-        Self { machine, kept: Kept::default(), teeth: Teeth::BLANK, states: [None; 4] }
+        Self { machine, is_known: false, kept: Kept::default(), teeth: Teeth::BLANK, states: [None; 4] }
+    }
+
+    /// Of the machine of the run itself.
+    pub fn known(machine: &'a Loop<'a>) -> Self {
+        Self { is_known: true, ..Self::new(machine) }
     }
 
     /// The machine.
@@ -31,39 +37,34 @@ impl<'a> Near<'a> {
         self.machine
     }
 
-    /// Forgets what was asked for.
-    pub fn begin_anew(&mut self) {
-        (self.kept, self.states) = (Kept::default(), [None; 4]);
-    }
-
-    /// The state at a sample; where it is not kept it is settled from the commanded displacement there and a first guess of the
-    /// deflection. `None` beyond the path.
-    pub fn state(&mut self, sample: usize, begin: impl FnOnce(usize) -> Option<(Vector, Vector)>) -> Option<State> {
+    /// The state at a sample, with the command of the run there, and settled from its deflection where it is not kept. `run` tells the
+    /// states that are known; `None` beyond them.
+    fn state(&mut self, sample: usize, run: impl FnOnce(usize) -> Option<State>) -> Option<State> {
+        if self.is_known {
+            return run(sample);
+        }
         let slot = sample.checked_rem(self.states.len()).and_then(|at| self.states.get_mut(at))?;
         if let Some((at, state)) = slot
             && *at == sample
         {
             return Some(*state);
         }
-        let (commanded, guess) = begin(sample)?;
-        let (state, _) = self.machine.state(&mut self.kept, sample, commanded, guess)?;
+        let State { commanded, displacement, .. } = run(sample)?;
+        let (state, _) = self.machine.state(&mut self.kept, sample, commanded, displacement)?;
         *slot = Some((sample, state));
         Some(state)
     }
 
-    /// The wall error beside sample `index` at a height that the cutter makes at or between sample `maker` and its neighbours; `begin` as for
-    /// [`state`](Self::state). Without the undersize of the machine.
+    /// How far the cutter at sample `maker`, which makes the wall beside sample `index` at a height or is nearest to where it is made, ends
+    /// short of that wall, without the undersize of the machine: what another machine changes of it is what it changes of the wall error.
+    /// `run` tells the states that are known.
     pub fn wall(
         &mut self,
         (index, maker, height): (usize, usize, Real),
-        mut begin: impl FnMut(usize) -> Option<(Vector, Vector)>,
+        run: impl FnOnce(usize) -> Option<State>,
     ) -> Option<Offset> {
-        let mut gap = |sample: usize| {
-            let state = self.state(sample, &mut begin)?;
-            let displacement = self.machine.at_height(&mut self.teeth, &state, height);
-            left_by(self.machine.path, index, sample, displacement)
-        };
-        let own = gap(maker)?;
-        Some(lowest_about(maker, own, gap))
+        let state = self.state(maker, run)?;
+        let displacement = self.machine.at_height(&mut self.teeth, &state, height);
+        left_by(self.machine.path, index, maker, displacement)
     }
 }

@@ -385,7 +385,7 @@ impl<'e, 'a, D: Displacements> Look<'e, 'a, D> {
 }
 
 /// The lowest gap within one sample of a cutter position, whose own is known; `gap` tells those of its neighbours.
-pub fn lowest_about(sample: usize, own: Offset, mut gap: impl FnMut(usize) -> Option<Offset>) -> Offset {
+fn lowest_about(sample: usize, own: Offset, mut gap: impl FnMut(usize) -> Option<Offset>) -> Offset {
     let (Some(before), Some(after)) = (gap(sample.saturating_sub(1)), gap(sample.saturating_add(1))) else {
         return own;
     };

@@ -71,20 +71,21 @@ pub struct Cut<'a> {
 /// Both halves of a [pair](Observation::paired) are among the observations, each with those of its own cut, and no two pairs
 /// of all parts have one number. The observations are those of the cuts in their order: those of the `earlier` parts, one part behind the other, then
 /// those of the last. `commanded(cut, sample)` is the displacement that the program commanded at a sample of a cut, counted
-/// from 0. Every part has a datum and a level of force of its own, which all its contours share; those of
+/// from 0. A fit may begin where another of the same points has ended that is of nearly the same machine and of the same prior: the
+/// observations are those that it left. Every part has a datum and a level of force of its own, which all its contours share; those of
 /// [`Fit::parameters`] are the last one's, the others are left in `earlier`, which say what is believed of the levels. `observe` is told the share of the longest possible fit that is done, ‰, rising: a
 /// fit that settles early ends before 1000. On return the observations hold predictions, weights and sensitivities at
 /// the solution.
 pub fn identify(
     cuts: &[Cut],
-    prior: &Prior,
+    (prior, begin): (&Prior, Option<&Fit>),
     earlier: &mut [EarlierPart],
     observations: &mut [Observation],
     commanded: impl Fn(usize, usize) -> Vector + Copy + Sync,
     predictor: &mut impl Predictor,
     observe: &mut dyn FnMut(u16),
 ) -> Fit {
-    Task { cuts, prior, commanded }.fit(earlier, observations, predictor, observe)
+    Task { cuts, prior, begin, commanded }.fit(earlier, observations, predictor, observe)
 }
 
 /// Share of the longest possible fit that is done after some steps and parameters of the next linearisation, ‰.
@@ -98,6 +99,7 @@ fn permille(steps: u32, parameters: usize) -> u16 {
 struct Task<'t, C> {
     cuts: &'t [Cut<'t>],
     prior: &'t Prior,
+    begin: Option<&'t Fit>,
     commanded: C,
 }
 
@@ -133,11 +135,13 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
         let prior = self.prior;
         let mut table = ForceTable::BLANK;
         table.tabulate(prior.mean.coefficients.size_exponent);
-        let mut theta = [Real::ZERO; COUNT];
+        let mut theta = self.begin.map_or([Real::ZERO; COUNT], |other| other.theta);
         for part in earlier.iter_mut() {
             *part = EarlierPart::new(part.points, part.believed);
         }
-        let mut points = Points { earlier, observations, predictor, come: None, is_predicted: false };
+        // Sensitivities of another machine are taken anew where the fit ends.
+        let come = self.begin.map(|_| THERE);
+        let mut points = Points { earlier, observations, predictor, come, is_predicted: false };
         spread::set(points.observations, Real::ONE);
         let mut aim = Aim { gate: Real::MAX, least: ROUGHLY };
         let (mut information, _, mut steps) = self.settle(&mut table, &mut theta, aim, &mut points, observe);

@@ -27,7 +27,7 @@ pub fn identify_law(
         let prior = around(law);
         let third = &mut |permille: u16| observe(fits.saturating_mul(1000).saturating_add(permille) / 3);
         let cuts = [Cut { path: path.with_law(law), points: observations.len(), part: 0 }];
-        let fit = identify(&cuts, &prior, &mut [], observations, commanded, predictor, third);
+        let fit = identify(&cuts, (&prior, None), &mut [], observations, commanded, predictor, third);
         (law, prior, fit)
     };
     let mean = under(WallLaw::Mean, observations, 0);

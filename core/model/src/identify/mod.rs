@@ -57,7 +57,7 @@
 //!     point.error = point.predicted.scaled(Real::ratio(1, 2));
 //! }
 //! let cuts = [Cut { path, points: points.len(), part: 0 }];
-//! identify(&cuts, &prior, &mut [], &mut points, |_, _| Vector::ZERO, &mut workspace, &mut |_| ());
+//! identify(&cuts, (&prior, None), &mut [], &mut points, |_, _| Vector::ZERO, &mut workspace, &mut |_| ());
 //! assert!(points.iter().all(|point| point.residual().abs() < Real::ONE));
 //! ```
 

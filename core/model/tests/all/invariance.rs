@@ -97,7 +97,7 @@ fn identified(motion: Motion, blocks: &[Block], wall: Side, prior: &Compliance, 
     let (mut s, mut d) = (vec![State::REST; need], vec![Vector::ZERO; need]);
     let mut lent = PredictionWorkspace { states: &mut s, displacements: &mut d };
     let cuts = [Cut { path, points: observations.len(), part: 0 }];
-    let fit = identify(&cuts, &prior, &mut [], &mut observations, |_, _| Vector::ZERO, &mut lent, &mut |_| ());
+    let fit = identify(&cuts, (&prior, None), &mut [], &mut observations, |_, _| Vector::ZERO, &mut lent, &mut |_| ());
     let table = ForceTable::new(fit.parameters.coefficients.size_exponent);
     let machine = fit.parameters.machine(&path, &table);
     (fit, designed(&machine, Law::Model).0)

@@ -36,4 +36,4 @@ pub use feature::{Engagement, Feature, Sensitivity};
 pub use kernel::{Kernel, least_change};
 pub use open::Open;
 pub use points::{CutPoints, Own, Points, stock_sensitivities};
-pub use relieved::{PartCut, Relieved, is_fitted, ln_evidence, own, plain, relieved};
+pub use relieved::{PartCut, Relieved, is_fitted, ln_evidence, own, plain, plain_from, relieved};

@@ -8,7 +8,7 @@ use truepath_core::correct::{Node, commanded};
 use truepath_core::cut::{Path, Sample, State, WallLaw};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{
-    Cut, EarlierPart, Level, Observation, PredictionWorkspace, join_pairs, predict, speaks_for_mean,
+    Cut, EarlierPart, Fit, Level, Observation, PredictionWorkspace, join_pairs, predict, speaks_for_mean,
 };
 use truepath_core::job::{self, LawName};
 use truepath_core::units::Offset;
@@ -89,9 +89,9 @@ pub fn is_fitted(pass: &Pass) -> bool {
 /// its own. `progress` is told the share done.
 pub fn plain(pass: &Pass, law: Option<WallLaw>, cuts: &[PartCut<'_>], progress: &mut dyn FnMut(f64)) -> Found {
     let measured: Vec<Observation> = cuts.iter().flat_map(|cut| cut.observations).copied().collect();
-    let levels = if is_fitted(pass) { vec![0.0; last_part(cuts)] } else { Vec::new() };
+    let levels = even_levels(pass, cuts);
     if let Some(law) = law {
-        return fitted(&pass.core, law, cuts, &measured, &levels, progress);
+        return fitted(&pass.core, law, cuts, (&measured, None), &levels, progress);
     }
     let by_program = |cut: usize, sample: usize| by_program(cuts, cut, sample);
     let (mean, helical) =
@@ -104,17 +104,29 @@ pub fn plain(pass: &Pass, law: Option<WallLaw>, cuts: &[PartCut<'_>], progress: 
     if is_mean { mean } else { helical }
 }
 
-/// As [`plain()`], under a law, to observations in place of those of the cuts, at known levels of force of the parts.
+/// As [`plain()`], from where that of the same points has ended whose cutter differs a little, and under its law.
+pub fn plain_from(pass: &Pass, other: &Found, cuts: &[PartCut<'_>]) -> Found {
+    let begin = (other.observations.as_slice(), Some(&other.core.fit));
+    fitted(&pass.core, other.core.law, cuts, begin, &even_levels(pass, cuts), &mut |_| ())
+}
+
+/// The levels of force at which the parts begin.
+fn even_levels(pass: &Pass, cuts: &[PartCut<'_>]) -> Vec<f64> {
+    if is_fitted(pass) { vec![0.0; last_part(cuts)] } else { Vec::new() }
+}
+
+/// As [`plain()`], under a law, to observations in place of those of the cuts, at known levels of force of the parts; they may be those that
+/// another fit has left, to go on from there.
 fn fitted(
     pass: &job::ContourPass,
     law: WallLaw,
     cuts: &[PartCut<'_>],
-    observations: &[Observation],
+    (observations, begin): (&[Observation], Option<&Fit>),
     levels: &[f64],
     progress: &mut dyn FnMut(f64),
 ) -> Found {
     let by_program = |cut: usize, sample: usize| by_program(cuts, cut, sample);
-    asked(cuts, observations, levels, |points| found(pass, Some(law), points, by_program, progress))
+    asked(cuts, observations, levels, |points| found(pass, Some(law), Asked { begin, ..points }, by_program, progress))
 }
 
 /// The displacement that the program commanded at a sample of a cut.
@@ -135,7 +147,7 @@ fn asked<T>(
     let level = |part: usize| levels.get(part).map_or(Level::ANY, |level| Level::known(real(*level)));
     let earlier: Vec<EarlierPart> =
         (0..last_part(parts)).map(|part| EarlierPart::new(count(part), level(part))).collect();
-    fit(Asked { cuts: &cuts, earlier: &earlier, observations })
+    fit(Asked { cuts: &cuts, earlier: &earlier, observations, begin: None })
 }
 
 /// What the parts show beside machine and material, which are fitted again to the points relieved of it; `found` is their
@@ -384,7 +396,7 @@ impl Beside {
             o.error -= nm(*rest);
         }
         // From the prior again: from the last fit it may stay with points of something else.
-        let mut found = self.stocked(cuts, |cuts| fitted(pass, law, cuts, &relieved, &self.levels, progress));
+        let mut found = self.stocked(cuts, |cuts| fitted(pass, law, cuts, (&relieved, None), &self.levels, progress));
         for (o, measured) in found.observations.iter_mut().zip(measured()) {
             o.error = measured.error;
         }

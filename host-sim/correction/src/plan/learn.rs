@@ -282,7 +282,7 @@ fn uncorrected(cuts: &[PlannedCut<'_>]) -> Result<Found, Failure> {
         Ok(cuts[k].history.parts.first().map(|part| observations(&part.measured)).unwrap_or_default())
     })?;
     let first = &agreed.first().ok_or_else(|| Failure::Internal("no contour to learn from".to_owned()))?.core;
-    let points = Points { cuts: &placed, earlier: &[], observations: &points };
+    let points = Points { cuts: &placed, earlier: &[], observations: &points, begin: None };
     Ok(found(first, asked(first.job.force.model), points, |_, _| Vector::ZERO, &mut |_| ()))
 }
 

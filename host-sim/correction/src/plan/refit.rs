@@ -74,7 +74,7 @@ pub fn refit(cuts: &[MeasuredCut<'_>], coarse: &[Path], mut known: Vec<Identific
         before.clone_from(&yielded);
         let mut shifted: Vec<Observation> = measured.concat();
         shifted.iter_mut().zip(&yielded).for_each(|(point, by)| point.error -= *by);
-        let points = Points { cuts: &placed, earlier: &[], observations: &shifted };
+        let points = Points { cuts: &placed, earlier: &[], observations: &shifted, begin: None };
         let law = known.first().map(Identification::law);
         let Found { core, mut observations, .. } =
             found(&first.pass.core, law, points, |_, _| Vector::ZERO, &mut |_| ());
