@@ -278,8 +278,8 @@ fn at_height(
     height: Height,
 ) {
     if profiles.iter().any(Profile::is_current) {
-        let mut teeth = Teeth::BLANK;
-        read(machine, height, Sought::new(machine, states, fraction, (&mut teeth, displacements)), profiles);
+        let (mut teeth, state) = (Teeth::BLANK, |slot: usize| states.get(slot).copied());
+        read(machine, height, Sought::new(machine, state, fraction, (&mut teeth, displacements)), profiles);
     } else {
         Envelope::displace(machine, states, fraction, displacements);
         read(machine, height, &*displacements, profiles);

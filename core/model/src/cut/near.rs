@@ -2,7 +2,7 @@
 
 use super::elastic::{Kept, Loop, State};
 use super::teeth::Teeth;
-use super::wall::left_by;
+use super::wall::{left_by, lowest_about};
 use truepath_units::{Offset, Real};
 
 /// States of a machine at samples near each other, the last of them kept: walls beside one place, at several heights, are made by
@@ -55,16 +55,19 @@ impl<'a> Near<'a> {
         Some(state)
     }
 
-    /// How far the cutter at sample `maker`, which makes the wall beside sample `index` at a height or is nearest to where it is made, ends
-    /// short of that wall, without the undersize of the machine: what another machine changes of it is what it changes of the wall error.
-    /// `run` tells the states that are known.
+    /// The wall error beside sample `index` at a height that the cutter makes at or between sample `maker` and its neighbours, without the
+    /// undersize of the machine. `run` tells the states that are known.
     pub fn wall(
         &mut self,
         (index, maker, height): (usize, usize, Real),
-        run: impl FnOnce(usize) -> Option<State>,
+        run: impl Fn(usize) -> Option<State>,
     ) -> Option<Offset> {
-        let state = self.state(maker, run)?;
-        let displacement = self.machine.at_height(&mut self.teeth, &state, height);
-        left_by(self.machine.path, index, maker, displacement)
+        let mut gap = |sample: usize| {
+            let state = self.state(sample, &run)?;
+            let displacement = self.machine.at_height(&mut self.teeth, &state, height);
+            left_by(self.machine.path, index, sample, displacement)
+        };
+        let own = gap(maker)?;
+        Some(lowest_about(maker, own, gap))
     }
 }

@@ -36,39 +36,39 @@ impl Displacements for &[Vector] {
     }
 }
 
-/// Displacements at a height, each computed when it is first asked for: of a few walls side by side an envelope looks at less than half.
+/// Displacements at a height, each computed when it is first asked for: of a few walls side by side an envelope looks at a quarter.
 #[derive(Debug)]
-pub(crate) struct Sought<'a> {
+pub(crate) struct Sought<'a, S> {
     machine: &'a Loop<'a>,
-    states: &'a [State],
+    state: S,
     fraction: Real,
     teeth: &'a mut Teeth,
     known: &'a mut [Vector],
 }
 
-impl<'a> Sought<'a> {
+impl<'a, S: FnMut(usize) -> Option<State>> Sought<'a, S> {
     /// A displacement that nobody has asked for.
     const UNKNOWN: Vector = Vector { x: Offset::MAX, y: Offset::MAX };
 
-    /// Of a machine at a fraction of the engaged depth; `known` is as long as `states`. The teeth are lent, so that they are on the stack
-    /// once.
+    /// Of a machine at a fraction of the engaged depth; `state` tells a state, `known` is as long as there are any. The teeth are lent, so
+    /// that they are on the stack once.
     pub(crate) fn new(
         machine: &'a Loop<'a>,
-        states: &'a [State],
+        state: S,
         fraction: Real,
         (teeth, known): (&'a mut Teeth, &'a mut [Vector]),
     ) -> Self {
         known.fill(Self::UNKNOWN);
-        Self { machine, states, fraction, teeth, known }
+        Self { machine, state, fraction, teeth, known }
     }
 }
 
-impl Displacements for Sought<'_> {
+impl<S: FnMut(usize) -> Option<State>> Displacements for Sought<'_, S> {
     #[inline]
     fn displacement(&mut self, slot: usize) -> Option<Vector> {
         let known = self.known.get_mut(slot)?;
         if *known == Self::UNKNOWN {
-            *known = self.machine.at_height(self.teeth, self.states.get(slot)?, self.fraction);
+            *known = self.machine.at_height(self.teeth, &(self.state)(slot)?, self.fraction);
         }
         Some(*known)
     }
@@ -139,18 +139,12 @@ impl<'a, D: Displacements> Envelope<'a, D> {
         let path = self.path;
         let mut look = Look::beside(self, index, guess)?;
         let far = if path.is_crowded() { look.by_arc_length(index) } else { look.by_samples(index) };
-        // Descent with halving strides.
-        let mut stride = (far / EIGHTHS).max(1);
-        while stride > 0 {
-            let from = look.made_by;
-            look.at(from.saturating_sub(stride));
-            look.at(from.saturating_add(stride));
-            if look.made_by == from {
-                stride /= 2;
-            }
-        }
-        let (made_by, lowest) = (look.made_by, look.lowest);
-        Some(WallError { error: lowest_about(made_by, lowest, |at| look.gap(at)), made_by })
+        Some(look.descend(far / EIGHTHS))
+    }
+
+    /// The same beside a place next to one whose wall is known, which is made next to `guess`: there is no other to look for.
+    pub(crate) fn read_next(&mut self, index: usize, guess: usize) -> Option<WallError> {
+        Some(Look::beside(self, index, guess)?.descend(1))
     }
 }
 
@@ -244,6 +238,21 @@ impl<'e, 'a, D: Displacements> Look<'e, 'a, D> {
             }
         }
         Some(look)
+    }
+
+    /// Goes down to the nearest minimum with halving strides.
+    fn descend(&mut self, stride: usize) -> WallError {
+        let mut stride = stride.max(1);
+        while stride > 0 {
+            let from = self.made_by;
+            self.at(from.saturating_sub(stride));
+            self.at(from.saturating_add(stride));
+            if self.made_by == from {
+                stride /= 2;
+            }
+        }
+        let (made_by, lowest) = (self.made_by, self.lowest);
+        WallError { error: lowest_about(made_by, lowest, |at| self.gap(at)), made_by }
     }
 
     fn take(&mut self, at: usize, gap: Offset) {
@@ -385,7 +394,7 @@ impl<'e, 'a, D: Displacements> Look<'e, 'a, D> {
 }
 
 /// The lowest gap within one sample of a cutter position, whose own is known; `gap` tells those of its neighbours.
-fn lowest_about(sample: usize, own: Offset, mut gap: impl FnMut(usize) -> Option<Offset>) -> Offset {
+pub(super) fn lowest_about(sample: usize, own: Offset, mut gap: impl FnMut(usize) -> Option<Offset>) -> Offset {
     let (Some(before), Some(after)) = (gap(sample.saturating_sub(1)), gap(sample.saturating_add(1))) else {
         return own;
     };

@@ -1,7 +1,7 @@
 //! What was probed, and what the model says the probe should have found there.
 
 use super::parameters::{COUNT, Parameters};
-use crate::cut::{Envelope, ForceTable, Loop, Path, Sought, State, Teeth};
+use crate::cut::{Displacements, Envelope, ForceTable, Kept, Loop, Path, Sought, State, Teeth};
 use truepath_units::geometry::{Direction, Vector};
 use truepath_units::{Offset, Real, hypot_nm};
 
@@ -191,7 +191,7 @@ fn reach(path: &Path) -> Offset {
 }
 
 /// Predicts the wall error at every observation and writes it into `predicted`. Observations of one place should
-/// stand together: the elastic loop is run once for them.
+/// stand together: where the cutter is, is found once for them.
 ///
 /// `commanded` is the displacement the program commanded at each sample of the path (zero for an uncorrected part). A half
 /// of a width between two contours is given its own wall: [`join_pairs`] makes it what the width sees.
@@ -234,14 +234,18 @@ pub fn join_pairs(observations: &mut [Observation]) {
     }
 }
 
-/// The stretch of the path around a place that the elastic loop was run over last.
+/// The stretch of the path around a place where the cutter was last asked for.
 #[derive(Default)]
 struct Neighbourhood {
     place: Option<(Offset, usize, usize)>,
+    /// The last deflection that was found.
+    guess: Vector,
+    kept: Kept,
 }
 
 impl Neighbourhood {
-    /// The wall error that a machine leaves at a place and a height; the loop is run where the place is another one.
+    /// The wall error that a machine leaves at a place and a height. The cutter is found where the envelope looks: the loop does not
+    /// remember how it came to a place, and settles from any deflection nearby.
     fn wall(
         &mut self,
         machine: &Loop,
@@ -258,31 +262,50 @@ impl Neighbourhood {
                 let from = path.index_at(s - reach(path)).max(working.start);
                 let to = path.index_at(s + reach(path)).min(working.end).max(from);
                 let count = to.saturating_sub(from).saturating_add(1).min(workspace.states.len());
-                if let Some(states) = workspace.states.get_mut(..count) {
-                    machine.run(from, states, commanded);
-                }
-                self.place = Some((s, from, count));
+                workspace.states.get_mut(..count).unwrap_or_default().fill(UNKNOWN);
+                // No place knows of another.
+                (self.place, self.guess) = (Some((s, from, count)), Vector::ZERO);
                 (from, count)
             }
         };
-        let states = workspace.states.get(..count).unwrap_or_default();
+        let states = workspace.states.get_mut(..count).unwrap_or_default();
         let displacements = workspace.displacements.get_mut(..count).unwrap_or_default();
+        let Self { guess, kept, .. } = self;
+        let state = |slot: usize| {
+            let known = states.get_mut(slot)?;
+            if *known == UNKNOWN {
+                let index = from.saturating_add(slot);
+                let (state, iterations) = machine.state(kept, index, commanded(index), *guess)?;
+                *known = state;
+                if iterations > 0 {
+                    *guess = state.displacement;
+                }
+            }
+            Some(*known)
+        };
         let mut teeth = Teeth::BLANK;
-        wall_at(path, from, Sought::new(machine, states, height, (&mut teeth, displacements)), s)
+        wall_at(path, from, Sought::new(machine, state, height, (&mut teeth, displacements)), s)
     }
 }
 
+/// A state that nobody has asked for: nothing is commanded so far away.
+const UNKNOWN: State = State { commanded: Vector { x: Offset::MAX, y: Offset::MAX }, ..State::REST };
+
 /// The wall error at an arc length, between the two samples that enclose it.
-fn wall_at(path: &Path, from: usize, displacements: Sought<'_>, s: Offset) -> Offset {
+fn wall_at(path: &Path, from: usize, displacements: impl Displacements, s: Offset) -> Offset {
     let mut envelope = Envelope::of(path, from, displacements);
     let after = path.samples().partition_point(|x| x.s <= s);
     let before = after.saturating_sub(1);
-    let mut at = |i: usize| envelope.read(i, i).map(|e| e.error);
+    let first = envelope.read(before, before);
     let (Some(a), Some(b)) = (path.samples().get(before), path.samples().get(after)) else {
-        return at(before).unwrap_or_default();
+        return first.map_or(Offset::ZERO, |wall| wall.error);
     };
     let u = (s - a.s).over(b.s - a.s);
-    match (at(before), at(after)) {
+    let second = match first {
+        Some(wall) => envelope.read_next(after, wall.made_by.saturating_add(1)),
+        None => envelope.read(after, after),
+    };
+    match (first.map(|wall| wall.error), second.map(|wall| wall.error)) {
         (Some(ea), Some(eb)) => ea + (eb - ea).scaled(u),
         (ea, eb) => ea.or(eb).unwrap_or_default(),
     }
