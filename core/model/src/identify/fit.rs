@@ -193,7 +193,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
             let step = information.step();
             let largest = step.iter().map(|v| v.abs()).max().unwrap_or_default();
             // Backtracking: halve until the cost falls.
-            let mut share = Real::ONE;
+            let (mut share, mut is_lowest) = (Real::ONE, false);
             let (taken, new_cost) = loop {
                 let mut trial = *theta;
                 for (t, s) in trial.iter_mut().zip(&step) {
@@ -208,13 +208,19 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
                     points.is_predicted = true;
                     break (Some(trial), trial_cost);
                 }
+                // So near to the lowest cost a prediction is rounded by more than a step gains.
+                if trial_cost - cost < least && largest * share <= THERE {
+                    is_lowest = true;
+                    break (None, cost);
+                }
                 share = share * Real::HALF;
                 if share < Real::ratio(1, 40) {
                     break (None, cost);
                 }
             };
             let Some(accepted) = taken else {
-                if points.come.is_none_or(|come| come == Real::ZERO) {
+                let is_there = least > SETTLED || points.come.is_some_and(|come| come <= THERE);
+                if points.come.is_none_or(|come| come == Real::ZERO) || is_lowest && is_there {
                     break;
                 }
                 // Sensitivities of another place may have led astray.
