@@ -181,7 +181,8 @@ fn stretch_by_stretch(
         })
         .collect();
     type Lead = (Vec<State>, Option<Vector>, Option<Vector>);
-    let each = |(k, ((states, moved), lead)): (usize, ((&mut [State], &mut [bool]), Lead))| {
+    type Stretch<'s> = ((&'s mut [State], &'s mut [bool]), Lead);
+    let each = |(k, ((states, moved), lead)): (usize, Stretch<'_>)| {
         let from = from + k * length;
         let (mut lead, before_lead, before) = lead;
         let mut begins = before_lead.unwrap_or(Vector::ZERO);
@@ -278,12 +279,13 @@ impl<'a, const N: usize> CutWalls<'a, N> {
         heights: [Real; N],
         walls: impl Iterator<Item = (usize, [Option<WallError>; N])>,
     ) -> Self {
-        let mut sought = Sought::of(machine, states.len(), heights, |slot| states.get(slot).copied());
+        let start = machine.path.working().start;
+        let mut makers = Makers::of(machine, heights, |maker| states.get(maker - start).copied());
         let (places, made) = walls
             .map(|(place, column)| {
                 let made = std::array::from_fn(|height| {
                     let maker = column[height]?.made_by;
-                    Some((maker, sought.made(place, maker, height)?))
+                    Some((maker, makers.short_of(place, maker, height)?))
                 });
                 (place, made)
             })
@@ -297,14 +299,14 @@ impl<'a, const N: usize> CutWalls<'a, N> {
         let Self { machine, states, heights, .. } = *self;
         let start = machine.path.working().start;
         let mut kept = Kept::default();
-        let state = |slot: usize| {
-            let State { commanded, displacement, .. } = *states.get(slot)?;
-            other.state(&mut kept, start + slot, commanded, displacement).map(|(state, _)| state)
+        let state = |maker: usize| {
+            let State { commanded, displacement, .. } = *states.get(maker - start)?;
+            other.state(&mut kept, maker, commanded, displacement).map(|(state, _)| state)
         };
-        let mut sought = Sought::of(other, states.len(), heights, state);
+        let mut makers = Makers::of(other, heights, state);
         let smaller = other.undersize - machine.undersize;
         let mut moved = |place: usize, height: usize, (maker, before): (usize, Offset)| {
-            Some(sought.made(place, maker, height)? - before + smaller)
+            Some(makers.short_of(place, maker, height)? - before + smaller)
         };
         let each = |(place, column): (&usize, &[Option<(usize, Offset)>; N])| {
             std::array::from_fn(|height| {
@@ -315,11 +317,36 @@ impl<'a, const N: usize> CutWalls<'a, N> {
     }
 }
 
+/// The cutter positions of a machine that make walls, asked for one height of a place after the other.
+struct Makers<'a, S, const N: usize> {
+    machine: &'a Loop<'a>,
+    state: S,
+    heights: Heights<N>,
+    /// The last: at the next height the wall is often made by it as well.
+    last: Option<(usize, State)>,
+}
+
+impl<'a, S: FnMut(usize) -> Option<State>, const N: usize> Makers<'a, S, N> {
+    /// From states that are asked for one by one, by their samples.
+    fn of(machine: &'a Loop<'a>, heights: [Real; N], state: S) -> Self {
+        Self { machine, state, heights: Heights::new(machine, heights), last: None }
+    }
+
+    /// How far the cutter at a sample ends short of the wall beside a place at a height.
+    fn short_of(&mut self, place: usize, maker: usize, height: usize) -> Option<Offset> {
+        let state = match self.last {
+            Some((sample, state)) if sample == maker => state,
+            _ => (self.state)(maker)?,
+        };
+        self.last = Some((maker, state));
+        let displacement = state.commanded + self.machine.deflection(&mut self.heights, height, &state);
+        left_by(self.machine.path, place, maker, displacement)
+    }
+}
+
 /// Displacements of a machine at all heights of the samples that were asked for.
 struct Sought<'a, S, const N: usize> {
     machine: &'a Loop<'a>,
-    /// The first sample.
-    start: usize,
     state: S,
     heights: Heights<N>,
     /// Where they are among the known ones, for every sample, counted from 1; 0 for nowhere.
@@ -330,15 +357,7 @@ struct Sought<'a, S, const N: usize> {
 impl<'a, S: FnMut(usize) -> Option<State>, const N: usize> Sought<'a, S, N> {
     /// From states that are asked for one by one, counted from the first of so many.
     fn of(machine: &'a Loop<'a>, states: usize, heights: [Real; N], state: S) -> Self {
-        let start = machine.path.working().start;
-        Self {
-            machine,
-            start,
-            state,
-            heights: Heights::new(machine, heights),
-            slots: vec![0; states],
-            known: Vec::new(),
-        }
+        Self { machine, state, heights: Heights::new(machine, heights), slots: vec![0; states], known: Vec::new() }
     }
 
     fn displacement(&mut self, slot: usize, height: usize) -> Option<Vector> {
@@ -348,12 +367,6 @@ impl<'a, S: FnMut(usize) -> Option<State>, const N: usize> Sought<'a, S, N> {
             *at = self.known.len() as u32;
         }
         self.known.get(*at as usize - 1)?.get(height).copied()
-    }
-
-    /// How far the cutter ends short of the wall beside a place at a height where it makes that about a sample.
-    fn made(&mut self, place: usize, maker: usize, height: usize) -> Option<Offset> {
-        let displacement = self.displacement(maker.checked_sub(self.start)?, height)?;
-        left_by(self.machine.path, place, maker, displacement)
     }
 }
 

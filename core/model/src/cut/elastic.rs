@@ -269,19 +269,53 @@ impl Loop<'_> {
 
     /// What the cutter is deflected by at several heights of a place, with the reach of the tooth that makes the wall.
     pub fn deflections<const N: usize>(&self, heights: &mut Heights<N>, state: &State) -> [Vector; N] {
-        let Heights { fractions, factors, flutes, teeth } = heights;
-        let is_true = self.path.setup().runout == Runout::NONE;
-        let (mut end, mut known) = (None, [Vector::ZERO; N]);
-        let heading = self.path.setup().wall.heading(state.normal);
-        for (((slot, fraction), factor), flutes) in known.iter_mut().zip(fractions).zip(factors).zip(flutes) {
-            let alike = self.force_at((flutes, &mut end), state, *fraction);
-            let (force, reach) =
-                if is_true { (alike, Vector::ZERO) } else { self.longest(teeth, state, *fraction, alike) };
-            let force = force.total(state.chip_scale);
-            let push = self.compliance.displacement(state.normal, heading, force);
-            *slot = push.scaled(*factor) + reach;
+        if self.is_even() {
+            let push = self.pushed(state, self.mean(state.engaged));
+            return heights.factors.map(|factor| push.scaled(factor));
+        }
+        let mut end = None;
+        let mut known = [Vector::ZERO; N];
+        for (k, slot) in known.iter_mut().enumerate() {
+            *slot = self.deflection_about(heights, k, state, &mut end);
         }
         known
+    }
+
+    /// That at one of the heights.
+    pub fn deflection<const N: usize>(&self, heights: &mut Heights<N>, height: usize, state: &State) -> Vector {
+        self.deflection_about(heights, height, state, &mut None)
+    }
+
+    #[inline]
+    fn deflection_about<const N: usize>(
+        &self,
+        heights: &mut Heights<N>,
+        height: usize,
+        state: &State,
+        end: &mut Option<Basis>,
+    ) -> Vector {
+        let Heights { fractions, factors, flutes, teeth } = heights;
+        let (Some(fraction), Some(factor), Some(flutes)) =
+            (fractions.get(height), factors.get(height), flutes.get_mut(height))
+        else {
+            return Vector::ZERO;
+        };
+        let alike = self.force_at((flutes, end), state, *fraction);
+        let is_true = self.path.setup().runout == Runout::NONE;
+        let (force, reach) =
+            if is_true { (alike, Vector::ZERO) } else { self.longest(teeth, state, *fraction, alike) };
+        self.pushed(state, force).scaled(*factor) + reach
+    }
+
+    /// Whether the force is the same at all heights.
+    fn is_even(&self) -> bool {
+        self.path.setup().law == WallLaw::Mean && self.path.setup().runout == Runout::NONE
+    }
+
+    /// What a force displaces the cutter by where the compliance is one.
+    fn pushed(&self, state: &State, force: SplitForce) -> Vector {
+        let heading = self.path.setup().wall.heading(state.normal);
+        self.compliance.displacement(state.normal, heading, force.total(state.chip_scale))
     }
 
     /// Deflection at a height: (its chip part, the whole with the reach of the tooth that makes the wall).
