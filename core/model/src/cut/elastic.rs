@@ -65,13 +65,15 @@ pub struct Heights<const N: usize> {
     factors: [Real; N],
     flutes: [Flutes; N],
     teeth: Teeth,
+    /// The antiderivatives at the end of an arc, and which.
+    end: Option<(Real, Basis)>,
 }
 
 impl<const N: usize> Heights<N> {
     /// Of a machine, and no place yet.
     pub fn new(machine: &Loop, fractions: [Real; N]) -> Self {
         let factors = fractions.map(|fraction| machine.compliance.height_factor(fraction));
-        Self { fractions, factors, flutes: [Flutes::NONE; N], teeth: Teeth::BLANK }
+        Self { fractions, factors, flutes: [Flutes::NONE; N], teeth: Teeth::BLANK, end: None }
     }
 }
 
@@ -273,34 +275,24 @@ impl Loop<'_> {
             let push = self.pushed(state, self.mean(state.engaged));
             return heights.factors.map(|factor| push.scaled(factor));
         }
-        let mut end = None;
         let mut known = [Vector::ZERO; N];
-        for (k, slot) in known.iter_mut().enumerate() {
-            *slot = self.deflection_about(heights, k, state, &mut end);
+        for (height, slot) in known.iter_mut().enumerate() {
+            *slot = self.deflection(heights, height, state);
         }
         known
     }
 
     /// That at one of the heights.
     pub fn deflection<const N: usize>(&self, heights: &mut Heights<N>, height: usize, state: &State) -> Vector {
-        self.deflection_about(heights, height, state, &mut None)
-    }
-
-    #[inline]
-    fn deflection_about<const N: usize>(
-        &self,
-        heights: &mut Heights<N>,
-        height: usize,
-        state: &State,
-        end: &mut Option<Basis>,
-    ) -> Vector {
-        let Heights { fractions, factors, flutes, teeth } = heights;
+        let Heights { fractions, factors, flutes, teeth, end } = heights;
         let (Some(fraction), Some(factor), Some(flutes)) =
             (fractions.get(height), factors.get(height), flutes.get_mut(height))
         else {
             return Vector::ZERO;
         };
-        let alike = self.force_at((flutes, end), state, *fraction);
+        let mut known = end.filter(|(angle, _)| *angle == state.engaged).map(|(_, basis)| basis);
+        let alike = self.force_at((flutes, &mut known), state, *fraction);
+        *end = known.map(|basis| (state.engaged, basis));
         let is_true = self.path.setup().runout == Runout::NONE;
         let (force, reach) =
             if is_true { (alike, Vector::ZERO) } else { self.longest(teeth, state, *fraction, alike) };
