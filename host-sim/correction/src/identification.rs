@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use truepath_core::cut::{ForceTable, Path, State, WallLaw};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{
-    Cut, EarlierPart, Fit, Observation, Parameters, PredictionWorkspace, Predictor, identify, predict, speaks_for_mean,
+    Cut, EarlierPart, Fit, Observation, Parameters, PredictionWorkspace, Predictor, Search, identify, speaks_for_mean,
 };
 use truepath_core::job::{self, ForceModel};
 
@@ -89,7 +89,15 @@ fn under(
         Places { room: cuts.iter().map(|cut| PredictionWorkspace::needed(&cut.path)).max().unwrap_or(0) };
     let prior = pass.prior(law);
     let mut observe = |permille| progress(f64::from(permille) / 1000.0);
-    let fit = identify(&cuts, (&prior, points.begin), &mut earlier, &mut observations, commanded, &mut predictor, &mut observe);
+    let fit = identify(
+        &cuts,
+        (&prior, points.begin),
+        &mut earlier,
+        &mut observations,
+        commanded,
+        &mut predictor,
+        &mut observe,
+    );
     Found { core: job::Identified { law, prior, fit }, earlier, observations }
 }
 
@@ -105,13 +113,15 @@ impl Predictor for Places {
         path: &Path,
         table: &ForceTable,
         parameters: &Parameters,
+        search: Search,
         commanded: impl Fn(usize) -> Vector + Copy + Sync,
         observations: &mut [Observation],
     ) {
         let places: Vec<&mut [Observation]> = observations.chunk_by_mut(|a, b| a.s == b.s).collect();
         let buffers = || (vec![State::REST; self.room], vec![Vector::ZERO; self.room]);
         places.into_par_iter().for_each_init(buffers, |(states, displacements), place| {
-            predict(path, table, parameters, commanded, place, &mut PredictionWorkspace { states, displacements });
+            let mut here = PredictionWorkspace { states, displacements };
+            here.predict(path, table, parameters, search, commanded, place);
         });
     }
 }

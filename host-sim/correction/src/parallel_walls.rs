@@ -14,12 +14,8 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 use rayon::{current_num_threads, join};
-use truepath_core::correct::{
-    Again, Band, HEIGHTS, Height, Profile, Scratch, WallReader, begin, finish, read,
-};
-use truepath_core::cut::{
-    Displacements, Envelope, Heights, Kept, Loop, Passage, Path, State, WallError, left_by,
-};
+use truepath_core::correct::{Again, Band, HEIGHTS, Height, Profile, Scratch, WallReader, begin, finish, read};
+use truepath_core::cut::{Displacements, Envelope, Heights, Kept, Loop, Passage, Path, State, WallError, left_by};
 use truepath_core::geometry::Vector;
 use truepath_core::units::{Offset, Real};
 

@@ -294,8 +294,7 @@ impl Loop<'_> {
         let alike = self.force_at((flutes, &mut known), state, *fraction);
         *end = known.map(|basis| (state.engaged, basis));
         let is_true = self.path.setup().runout == Runout::NONE;
-        let (force, reach) =
-            if is_true { (alike, Vector::ZERO) } else { self.longest(teeth, state, *fraction, alike) };
+        let (force, reach) = if is_true { (alike, Vector::ZERO) } else { self.longest(teeth, state, *fraction, alike) };
         self.pushed(state, force).scaled(*factor) + reach
     }
 

@@ -1,6 +1,6 @@
 //! The fit: Gauss–Newton with priors and a robust loss, over one part or several.
 
-use super::observation::{Observation, Predictor, join_pairs};
+use super::observation::{Observation, Predictor, Search, join_pairs};
 use super::parameters::{COUNT, Parameter, Parameters, Prior};
 use super::part::EarlierPart;
 use super::solve::{Information, Matrix};
@@ -272,7 +272,13 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
 
     /// Predicts the points of every cut with its own correction, and with what is its part's own. The table, which is large, is made anew
     /// where it is another machine's.
-    fn predict(&self, table: &mut ForceTable, parameters: &Parameters, points: &mut Points<impl Predictor>) {
+    fn predict(
+        &self,
+        table: &mut ForceTable,
+        parameters: &Parameters,
+        search: Search,
+        points: &mut Points<impl Predictor>,
+    ) {
         if table.size_exponent() != parameters.coefficients.size_exponent {
             table.tabulate(parameters.coefficients.size_exponent);
         }
@@ -281,7 +287,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
             let (own, others) = rest.split_at_mut(cut.points.min(rest.len()));
             let parameters =
                 points.earlier.get(cut.part).map_or(*parameters, |part| part.tried(self.prior, parameters));
-            points.predictor.predict(&cut.path, table, &parameters, |i| (self.commanded)(k, i), own);
+            points.predictor.predict(&cut.path, table, &parameters, search, |i| (self.commanded)(k, i), own);
             rest = others;
         }
         join_pairs(points.observations);
@@ -295,7 +301,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
         gate: Real,
         points: &mut Points<impl Predictor>,
     ) -> Real {
-        self.predict(table, &self.prior.at(theta), points);
+        self.predict(table, &self.prior.at(theta), Search::Everywhere, points);
         weighed(theta, gate, points)
     }
 
@@ -360,7 +366,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
                 for o in points.observations.iter_mut() {
                     o.base = o.predicted;
                 }
-                self.predict(table, &self.prior.at(&moved), points);
+                self.predict(table, &self.prior.at(&moved), Search::Nearby, points);
                 for o in points.observations.iter_mut() {
                     let change = (o.predicted - o.base).over(o.deviation()) / (side + side);
                     o.predicted = o.base;

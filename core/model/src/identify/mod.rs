@@ -74,7 +74,7 @@ mod tails;
 pub use fit::{Cut, Fit, identify};
 pub use law::{identify_law, speaks_for_mean};
 pub use neighbours::neighbours;
-pub use observation::{Observation, PredictionWorkspace, Predictor, join_pairs, predict};
+pub use observation::{Observation, PredictionWorkspace, Predictor, Search, join_pairs, predict};
 pub use parameters::{COUNT, Parameter, Parameters, Prior};
 pub use part::{EarlierPart, Eliminated, EliminatedLevel, Level};
 pub use solve::{Information, Matrix, square_root};

@@ -26,6 +26,8 @@ pub struct Observation {
     pub predicted: Offset,
     /// Prediction at the point about which a fit differentiates.
     pub(super) base: Offset,
+    /// The samples whose cutter positions made the wall there, and that across; [`NOBODY`] where none is known.
+    made_by: [u32; 2],
     /// Weight given by the robust loss, 0…1.
     pub weight: Real,
     /// Factor on the deviation of the points of a fit, found by it; 1 before.
@@ -33,6 +35,9 @@ pub struct Observation {
     /// Sensitivities: change of the predicted error per prior standard deviation, in standard deviations of the point.
     pub sensitivity: [Real; COUNT],
 }
+
+/// No sample.
+const NOBODY: u32 = u32::MAX;
 
 /// A bit that no arc length has, nm.
 const PAIRED: i64 = 1 << 60;
@@ -49,6 +54,7 @@ impl Observation {
             other: s,
             predicted: Offset::ZERO,
             base: Offset::ZERO,
+            made_by: [NOBODY; 2],
             weight: Real::ONE,
             spread: Real::ONE,
             sensitivity: [Real::ZERO; COUNT],
@@ -132,6 +138,16 @@ impl Observation {
     }
 }
 
+/// Where the cutter position is looked for that makes a wall.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Search {
+    /// As far as one may be.
+    Everywhere,
+    /// Beside the one that made it in the prediction before, of a machine that differs little: its difference quotients are those of one
+    /// wall.
+    Nearby,
+}
+
 /// Who predicts the points of a fit: one place after the other in lent buffers ([`PredictionWorkspace`]), or several at a time where
 /// there are several processors. The points of a place stand together, and no place knows of another.
 pub trait Predictor {
@@ -141,6 +157,7 @@ pub trait Predictor {
         path: &Path,
         table: &ForceTable,
         parameters: &Parameters,
+        search: Search,
         commanded: impl Fn(usize) -> Vector + Copy + Sync,
         observations: &mut [Observation],
     );
@@ -152,10 +169,29 @@ impl Predictor for PredictionWorkspace<'_> {
         path: &Path,
         table: &ForceTable,
         parameters: &Parameters,
+        search: Search,
         commanded: impl Fn(usize) -> Vector + Copy + Sync,
         observations: &mut [Observation],
     ) {
-        predict(path, table, parameters, commanded, observations, self);
+        let machine = parameters.machine(path, table);
+        let mut here = Neighbourhood::default();
+        for observation in observations.iter_mut() {
+            let [mut own, mut across] = match search {
+                Search::Everywhere => [NOBODY; 2],
+                Search::Nearby => observation.made_by,
+            };
+            let mut wall = |s, maker: &mut u32| here.wall(&machine, &commanded, (s, observation.height), maker, self);
+            let error = wall(observation.s, &mut own);
+            // A datum that moved towards the wall makes the wall look cut deeper by its share along the normal.
+            observation.predicted = match observation.across() {
+                None if observation.is_point() => {
+                    error + parameters.undersize - parameters.datum.along(observation.normal)
+                }
+                None => error + parameters.undersize,
+                Some(s) => (error + wall(s, &mut across)).scaled(Real::HALF) + parameters.undersize,
+            };
+            observation.made_by = [own, across];
+        }
     }
 }
 
@@ -199,24 +235,11 @@ pub fn predict(
     path: &Path,
     table: &ForceTable,
     parameters: &Parameters,
-    commanded: impl Fn(usize) -> Vector,
+    commanded: impl Fn(usize) -> Vector + Copy + Sync,
     observations: &mut [Observation],
     workspace: &mut PredictionWorkspace,
 ) {
-    let machine = parameters.machine(path, table);
-    let mut here = Neighbourhood::default();
-    for observation in observations.iter_mut() {
-        let wall = here.wall(&machine, &commanded, observation.s, observation.height, workspace);
-        // A datum that moved towards the wall makes the wall look cut deeper by its share along the normal.
-        observation.predicted = match observation.across() {
-            None if observation.is_point() => wall + parameters.undersize - parameters.datum.along(observation.normal),
-            None => wall + parameters.undersize,
-            Some(across) => {
-                let other = here.wall(&machine, &commanded, across, observation.height, workspace);
-                (wall + other).scaled(Real::HALF) + parameters.undersize
-            }
-        };
-    }
+    workspace.predict(path, table, parameters, Search::Everywhere, commanded, observations);
 }
 
 /// Gives both halves of every pair, of which each has the prediction of its own wall, the mean of the two.
@@ -245,13 +268,14 @@ struct Neighbourhood {
 
 impl Neighbourhood {
     /// The wall error that a machine leaves at a place and a height. The cutter is found where the envelope looks: the loop does not
-    /// remember how it came to a place, and settles from any deflection nearby.
+    /// remember how it came to a place, and settles from any deflection nearby. `maker` is the sample whose cutter position is known to
+    /// make it nearly, and becomes the one that does.
     fn wall(
         &mut self,
         machine: &Loop,
         commanded: &impl Fn(usize) -> Vector,
-        s: Offset,
-        height: Real,
+        (s, height): (Offset, Real),
+        maker: &mut u32,
         workspace: &mut PredictionWorkspace,
     ) -> Offset {
         let path = machine.path;
@@ -284,29 +308,43 @@ impl Neighbourhood {
             Some(*known)
         };
         let mut teeth = Teeth::BLANK;
-        wall_at(path, from, Sought::new(machine, state, height, (&mut teeth, displacements)), s)
+        let sought = Sought::new(machine, state, height, (&mut teeth, displacements));
+        let near = usize::try_from(*maker).ok().filter(|_| *maker != NOBODY);
+        let (error, made_by) = wall_at(path, Envelope::of(path, from, sought), s, near);
+        *maker = made_by.and_then(|sample| u32::try_from(sample).ok()).unwrap_or(NOBODY);
+        error
     }
 }
 
 /// A state that nobody has asked for: nothing is commanded so far away.
 const UNKNOWN: State = State { commanded: Vector { x: Offset::MAX, y: Offset::MAX }, ..State::REST };
 
-/// The wall error at an arc length, between the two samples that enclose it.
-fn wall_at(path: &Path, from: usize, displacements: impl Displacements, s: Offset) -> Offset {
-    let mut envelope = Envelope::of(path, from, displacements);
+/// The wall error at an arc length, between the two samples that enclose it, and the sample whose cutter position made it at the first;
+/// it is looked for beside one that is known.
+fn wall_at(
+    path: &Path,
+    mut envelope: Envelope<'_, impl Displacements>,
+    s: Offset,
+    near: Option<usize>,
+) -> (Offset, Option<usize>) {
     let after = path.samples().partition_point(|x| x.s <= s);
     let before = after.saturating_sub(1);
-    let first = envelope.read(before, before);
+    let first = match near {
+        Some(maker) => envelope.read_next(before, maker),
+        None => envelope.read(before, before),
+    };
+    let made_by = first.map(|wall| wall.made_by);
     let (Some(a), Some(b)) = (path.samples().get(before), path.samples().get(after)) else {
-        return first.map_or(Offset::ZERO, |wall| wall.error);
+        return (first.map_or(Offset::ZERO, |wall| wall.error), made_by);
     };
     let u = (s - a.s).over(b.s - a.s);
-    let second = match first {
-        Some(wall) => envelope.read_next(after, wall.made_by.saturating_add(1)),
+    let second = match made_by {
+        Some(maker) => envelope.read_next(after, maker.saturating_add(1)),
         None => envelope.read(after, after),
     };
-    match (first.map(|wall| wall.error), second.map(|wall| wall.error)) {
+    let error = match (first.map(|wall| wall.error), second.map(|wall| wall.error)) {
         (Some(ea), Some(eb)) => ea + (eb - ea).scaled(u),
         (ea, eb) => ea.or(eb).unwrap_or_default(),
-    }
+    };
+    (error, made_by)
 }

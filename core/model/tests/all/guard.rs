@@ -51,8 +51,15 @@ fn probed(places: &[i32]) -> Case {
     identify::predict(&path, &table, &prior.mean, |_| Vector::ZERO, &mut observations, &mut workspace);
     observations.iter_mut().for_each(|o| o.error = o.predicted);
     let cuts = [Cut { path, points: observations.len(), part: 0 }];
-    let fit =
-        identify::identify(&cuts, (&prior, None), &mut [], &mut observations, |_, _| Vector::ZERO, &mut workspace, &mut |_| ());
+    let fit = identify::identify(
+        &cuts,
+        (&prior, None),
+        &mut [],
+        &mut observations,
+        |_, _| Vector::ZERO,
+        &mut workspace,
+        &mut |_| (),
+    );
     Case { path, prior, fit, beside_sigma: Vec::new() }
 }
 

@@ -60,7 +60,8 @@ fn widths_alone_find_how_stiff_the_machine_is() {
         width.error = width.predicted;
     }
     let cuts = [Cut { path, points: widths.len(), part: 0 }];
-    let fit = identify(&cuts, (&believed, None), &mut [], &mut widths, |_, _| Vector::ZERO, &mut workspace, &mut |_| ());
+    let fit =
+        identify(&cuts, (&believed, None), &mut [], &mut widths, |_, _| Vector::ZERO, &mut workspace, &mut |_| ());
     let [found, truth] = [fit.parameters, stiff.mean].map(|p| p.compliance.mean.bits() as f64);
     assert!((found / truth - 1.0).abs() < 0.02, "{}", found / truth);
     // Two legs of equal widths leave open which of them yields.
@@ -91,7 +92,15 @@ fn two_halves_on_two_cuts_say_what_one_width_says() {
     let halves = vec![half(0, 2), half(1, 3), half(4, 2), half(5, 3)];
     let mut fitted = |mut readings: Vec<Observation>, points: &[usize]| {
         let cuts: Vec<Cut> = points.iter().map(|points| Cut { path, points: *points, part: 0 }).collect();
-        let fit = identify(&cuts, (&believed, None), &mut [], &mut readings, |_, _| Vector::ZERO, &mut workspace, &mut |_| ());
+        let fit = identify(
+            &cuts,
+            (&believed, None),
+            &mut [],
+            &mut readings,
+            |_, _| Vector::ZERO,
+            &mut workspace,
+            &mut |_| (),
+        );
         (fit, readings)
     };
     let ((of_widths, widths), (of_halves, halves)) = (fitted(widths, &[2]), fitted(halves, &[2, 2]));
