@@ -294,10 +294,13 @@ impl<'a, const N: usize> CutWalls<'a, N> {
     pub(crate) fn moved_by(&self, other: &Loop) -> Vec<[Offset; N]> {
         let Self { machine, states, heights, .. } = *self;
         let start = machine.path.working().start;
-        let mut kept = Kept::default();
+        // By how much its deflection is another one hardly changes from place to place.
+        let (mut kept, mut change) = (Kept::default(), Vector::ZERO);
         let state = |maker: usize| {
             let State { commanded, displacement, .. } = *states.get(maker - start)?;
-            other.state(&mut kept, maker, commanded, displacement).map(|(state, _)| state)
+            let (state, _) = other.state(&mut kept, maker, commanded, displacement + change)?;
+            change = state.displacement - displacement;
+            Some(state)
         };
         let mut makers = Makers::of(other, heights, state);
         let smaller = other.undersize - machine.undersize;

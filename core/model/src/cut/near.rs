@@ -3,6 +3,7 @@
 use super::elastic::{Kept, Loop, State};
 use super::teeth::Teeth;
 use super::wall::{left_by, lowest_about};
+use truepath_units::geometry::Vector;
 use truepath_units::{Offset, Real};
 
 /// States of a machine at samples near each other, the last of them kept: walls beside one place, at several heights, are made by
@@ -17,6 +18,8 @@ pub struct Near<'a> {
     is_known: bool,
     kept: Kept,
     teeth: Teeth,
+    /// By how much its deflection was another one than that of the run at the last sample: it hardly changes from place to place.
+    change: Vector,
     /// By the remainder of the number of their sample.
     states: [Option<(usize, State)>; 4],
 }
@@ -24,7 +27,8 @@ pub struct Near<'a> {
 impl<'a> Near<'a> {
     /// Of another machine than that of the run, and no sample yet.
     pub fn new(machine: &'a Loop<'a>) -> Self {
-        Self { machine, is_known: false, kept: Kept::default(), teeth: Teeth::BLANK, states: [None; 4] }
+        let (kept, teeth, change) = (Kept::default(), Teeth::BLANK, Vector::ZERO);
+        Self { machine, is_known: false, kept, teeth, change, states: [None; 4] }
     }
 
     /// Of the machine of the run itself.
@@ -37,7 +41,7 @@ impl<'a> Near<'a> {
         self.machine
     }
 
-    /// The state at a sample, with the command of the run there, and settled from its deflection where it is not kept. `run` tells the
+    /// The state at a sample, with the command of the run there, and settled from about its deflection where it is not kept. `run` tells the
     /// states that are known; `None` beyond them.
     fn state(&mut self, sample: usize, run: impl FnOnce(usize) -> Option<State>) -> Option<State> {
         if self.is_known {
@@ -50,7 +54,9 @@ impl<'a> Near<'a> {
             return Some(*state);
         }
         let State { commanded, displacement, .. } = run(sample)?;
-        let (state, _) = self.machine.state(&mut self.kept, sample, commanded, displacement)?;
+        let guess = displacement + self.change;
+        let (state, _) = self.machine.state(&mut self.kept, sample, commanded, guess)?;
+        self.change = state.displacement - displacement;
         *slot = Some((sample, state));
         Some(state)
     }

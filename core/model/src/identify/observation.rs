@@ -190,7 +190,10 @@ impl Predictor for PredictionWorkspace<'_> {
                 None => error + parameters.undersize,
                 Some(s) => (error + wall(s, &mut across)).scaled(Real::HALF) + parameters.undersize,
             };
-            observation.made_by = [own, across];
+            // Of difference quotients either side begins at the same.
+            if search == Search::Everywhere {
+                observation.made_by = [own, across];
+            }
         }
     }
 }
