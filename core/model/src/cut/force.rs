@@ -117,6 +117,10 @@ impl Basis {
     pub(super) fn scaled(self, factor: Real) -> Self {
         self.zip(self, |a, _| a * factor)
     }
+    /// As far behind the middle of the arc as it is before it.
+    fn mirrored(self) -> Self {
+        Self { chip_cosine: -self.chip_cosine, cosine: -self.cosine, ..self }
+    }
     fn at(size_exponent: Real, angle: Real) -> Self {
         let (sine, cosine) = sin_cos(angle);
         let chip = if size_exponent == Real::ZERO { sine } else { pow(sine, Real::ONE - size_exponent) };
@@ -160,13 +164,33 @@ impl ForceTable {
     /// Makes it the table for another size exponent, in place: a table takes 16 KiB.
     #[inline(never)]
     pub fn tabulate(&mut self, size_exponent: Real) {
+        // Behind the middle of the arc sines are those before it and cosines their opposites: half of the powers are enough.
         let step = Real::PI / Real::from_int(INTERVALS as i32);
-        let mut running = Basis::default();
-        for (i, (sum, d)) in self.sums.iter_mut().zip(self.density.iter_mut()).enumerate() {
-            let angle = Real::PI * Real::ratio(i as i64, INTERVALS as i64);
-            *d = Basis::at(size_exponent, angle);
+        for near in 0..=INTERVALS / 2 {
+            let far = INTERVALS.saturating_sub(near);
+            let angle = Real::PI * Real::ratio(near as i64, INTERVALS as i64);
+            let here = Basis::at(size_exponent, angle);
+            for (at, density) in [(far, here.mirrored()), (near, here)] {
+                if let Some(slot) = self.density.get_mut(at) {
+                    *slot = density;
+                }
+            }
+            if near < far {
+                let cell = cell(size_exponent, angle, step);
+                for (at, cell) in [(near.saturating_add(1), cell), (far, cell.mirrored())] {
+                    if let Some(slot) = self.sums.get_mut(at) {
+                        *slot = cell;
+                    }
+                }
+            }
+        }
+        let mut running = Basis::NOTHING;
+        if let Some(first) = self.sums.first_mut() {
+            *first = running;
+        }
+        for sum in self.sums.iter_mut().skip(1) {
+            running = running.plus(*sum);
             *sum = running;
-            running = running.plus(cell(size_exponent, angle, step));
         }
         self.size_exponent = size_exponent;
     }
