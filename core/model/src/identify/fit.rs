@@ -364,12 +364,12 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
                 }
                 // The prediction at the point itself is needed again: it is kept aside.
                 for o in points.observations.iter_mut() {
-                    o.base = o.predicted;
+                    o.keep();
                 }
                 self.predict(table, &self.prior.at(&moved), Search::Nearby, points);
                 for o in points.observations.iter_mut() {
-                    let change = (o.predicted - o.base).over(o.deviation()) / (side + side);
-                    o.predicted = o.base;
+                    let change = (o.predicted - o.kept()).over(o.deviation()) / (side + side);
+                    o.predicted = o.kept();
                     let sum = o.sensitivity.get(k).copied().unwrap_or_default() + change;
                     set(o, k, sum);
                 }

@@ -24,10 +24,11 @@ pub struct Observation {
     other: Offset,
     /// Predicted error of the last evaluation.
     pub predicted: Offset,
-    /// Prediction at the point about which a fit differentiates.
-    pub(super) base: Offset,
-    /// The samples whose cutter positions made the wall there, and that across; [`NOBODY`] where none is known.
-    made_by: [u32; 2],
+    /// Prediction at the point about which a fit differentiates, nm, within ±2.1 mm: what is farther off is no wall, and a device has
+    /// memory for so much.
+    base: i32,
+    /// The samples whose cutter positions made the wall there, and that across, counted from those beside; [`NOBODY`] where none is known.
+    made_by: [i16; 2],
     /// Weight given by the robust loss, 0…1.
     pub weight: Real,
     /// Factor on the deviation of the points of a fit, found by it; 1 before.
@@ -37,7 +38,7 @@ pub struct Observation {
 }
 
 /// No sample.
-const NOBODY: u32 = u32::MAX;
+const NOBODY: i16 = i16::MIN;
 
 /// A bit that no arc length has, nm.
 const PAIRED: i64 = 1 << 60;
@@ -53,7 +54,7 @@ impl Observation {
             normal,
             other: s,
             predicted: Offset::ZERO,
-            base: Offset::ZERO,
+            base: 0,
             made_by: [NOBODY; 2],
             weight: Real::ONE,
             spread: Real::ONE,
@@ -124,6 +125,13 @@ impl Observation {
         self.weight = weight;
         cost
     }
+    /// Keeps the prediction aside, and gives what is kept back.
+    pub(super) fn keep(&mut self) {
+        self.base = self.predicted.nm().clamp(i32::MIN.into(), i32::MAX.into()) as i32;
+    }
+    pub(super) fn kept(&self) -> Offset {
+        Offset::from_nm(self.base.into())
+    }
     /// Standard deviation of measured − predicted at the right parameters: probe noise and what the model may miss.
     pub fn deviation(&self) -> Offset {
         hypot_nm(self.noise, self.error.scaled(MODEL_SHARE)).scaled(self.spread).max(Offset::from_nm(1))
@@ -180,7 +188,7 @@ impl Predictor for PredictionWorkspace<'_> {
                 Search::Everywhere => [NOBODY; 2],
                 Search::Nearby => observation.made_by,
             };
-            let mut wall = |s, maker: &mut u32| here.wall(&machine, &commanded, (s, observation.height), maker, self);
+            let mut wall = |s, maker: &mut i16| here.wall(&machine, &commanded, (s, observation.height), maker, self);
             let error = wall(observation.s, &mut own);
             // A datum that moved towards the wall makes the wall look cut deeper by its share along the normal.
             observation.predicted = match observation.across() {
@@ -272,13 +280,13 @@ struct Neighbourhood {
 impl Neighbourhood {
     /// The wall error that a machine leaves at a place and a height. The cutter is found where the envelope looks: the loop does not
     /// remember how it came to a place, and settles from any deflection nearby. `maker` is the sample whose cutter position is known to
-    /// make it nearly, and becomes the one that does.
+    /// make it nearly, counted from that beside, and becomes the one that does.
     fn wall(
         &mut self,
         machine: &Loop,
         commanded: &impl Fn(usize) -> Vector,
         (s, height): (Offset, Real),
-        maker: &mut u32,
+        maker: &mut i16,
         workspace: &mut PredictionWorkspace,
     ) -> Offset {
         let path = machine.path;
@@ -312,9 +320,8 @@ impl Neighbourhood {
         };
         let mut teeth = Teeth::BLANK;
         let sought = Sought::new(machine, state, height, (&mut teeth, displacements));
-        let near = usize::try_from(*maker).ok().filter(|_| *maker != NOBODY);
-        let (error, made_by) = wall_at(path, Envelope::of(path, from, sought), s, near);
-        *maker = made_by.and_then(|sample| u32::try_from(sample).ok()).unwrap_or(NOBODY);
+        let (error, made_by) = wall_at(path, Envelope::of(path, from, sought), s, *maker);
+        *maker = made_by;
         error
     }
 }
@@ -322,27 +329,25 @@ impl Neighbourhood {
 /// A state that nobody has asked for: nothing is commanded so far away.
 const UNKNOWN: State = State { commanded: Vector { x: Offset::MAX, y: Offset::MAX }, ..State::REST };
 
-/// The wall error at an arc length, between the two samples that enclose it, and the sample whose cutter position made it at the first;
-/// it is looked for beside one that is known.
-fn wall_at(
-    path: &Path,
-    mut envelope: Envelope<'_, impl Displacements>,
-    s: Offset,
-    near: Option<usize>,
-) -> (Offset, Option<usize>) {
+/// The wall error at an arc length, between the two samples that enclose it, and the sample whose cutter position made it at the first,
+/// counted from that; it is looked for beside one that is known.
+fn wall_at(path: &Path, mut envelope: Envelope<'_, impl Displacements>, s: Offset, near: i16) -> (Offset, i16) {
     let after = path.samples().partition_point(|x| x.s <= s);
     let before = after.saturating_sub(1);
-    let first = match near {
-        Some(maker) => envelope.read_next(before, maker),
-        None => envelope.read(before, before),
+    let first = match before.checked_add_signed(near.into()) {
+        Some(maker) if near != NOBODY => envelope.read_next(before, maker),
+        _ => envelope.read(before, before),
     };
-    let made_by = first.map(|wall| wall.made_by);
+    let made_by = first.map_or(NOBODY, |wall| {
+        let shift = (wall.made_by as i64).saturating_sub(before as i64);
+        i16::try_from(shift).unwrap_or(NOBODY)
+    });
     let (Some(a), Some(b)) = (path.samples().get(before), path.samples().get(after)) else {
         return (first.map_or(Offset::ZERO, |wall| wall.error), made_by);
     };
     let u = (s - a.s).over(b.s - a.s);
-    let second = match made_by {
-        Some(maker) => envelope.read_next(after, maker.saturating_add(1)),
+    let second = match first {
+        Some(wall) => envelope.read_next(after, wall.made_by.saturating_add(1)),
         None => envelope.read(after, after),
     };
     let error = match (first.map(|wall| wall.error), second.map(|wall| wall.error)) {
