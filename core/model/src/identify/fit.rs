@@ -135,12 +135,14 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
         let prior = self.prior;
         let mut table = ForceTable::BLANK;
         table.tabulate(prior.mean.coefficients.size_exponent);
-        let mut theta = self.begin.map_or([Real::ZERO; COUNT], |other| other.theta);
+        let (mut theta, come) = match self.begin {
+            // Sensitivities of another machine are taken anew where the fit ends.
+            Some(other) => (other.theta, Some(THERE)),
+            None => ([Real::ZERO; COUNT], None),
+        };
         for part in earlier.iter_mut() {
             *part = EarlierPart::new(part.points, part.believed);
         }
-        // Sensitivities of another machine are taken anew where the fit ends.
-        let come = self.begin.map(|_| THERE);
         let mut points = Points { earlier, observations, predictor, come, is_predicted: false };
         spread::set(points.observations, Real::ONE);
         let mut aim = Aim { gate: Real::MAX, least: ROUGHLY };
