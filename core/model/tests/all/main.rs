@@ -1,5 +1,6 @@
 //! Engagement, force, elastic loop and correction against reference numbers and invariances.
 
+mod again;
 mod corner;
 mod cut_reference;
 mod engagement_properties;

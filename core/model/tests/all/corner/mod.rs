@@ -1,7 +1,7 @@
 //! The corner of P18 and P23 and the machine of the reference numbers, for tests.
 
 use truepath_model::correct::{
-    Band, Design, DesignWorkspace, InOrder, Law, Node, Predicted, Profile, Scratch, Target, Update, design,
+    Band, Design, DesignWorkspace, InOrder, Law, Node, Predicted, Profile, Scratch, Target, Update, WallReader, design,
 };
 use truepath_model::cut::{
     Coefficients, Compliance, CutSetup, Envelope, ForceTable, Loop, Milling, Path, Runout, Sample, State, WallLaw,
@@ -88,6 +88,10 @@ pub fn machine<'a>(path: &'a Path<'a>, table: &'a ForceTable, compliance: Compli
 }
 /// The correction that a law designs for a machine, and what is expected of it, beside every sample.
 pub fn designed(machine: &Loop, law: Law) -> (Vec<Node>, Vec<Predicted>) {
+    designed_by(machine, law, InOrder)
+}
+/// The same by who runs the cutter and reads the walls.
+pub fn designed_by(machine: &Loop, law: Law, reader: impl WallReader) -> (Vec<Node>, Vec<Predicted>) {
     let (n, w) = (machine.path.count(), machine.path.working().len());
     let (mut nodes, mut predicted) = (vec![Node::default(); n], vec![Predicted::default(); n]);
     let mut workspace = DesignWorkspace {
@@ -98,7 +102,7 @@ pub fn designed(machine: &Loop, law: Law) -> (Vec<Node>, Vec<Predicted>) {
         scratch: &mut vec![Scratch::default(); n],
         residual: &[],
         beside_sigma: &[],
-        reader: InOrder,
+        reader,
     };
     let wanted = Design { law, target: Target::Mean, band: Band::WHOLE, max_gouge: None };
     design(machine, &wanted, &mut nodes, &mut predicted, &mut workspace, &mut |_| ());
