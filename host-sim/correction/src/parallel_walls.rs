@@ -276,7 +276,7 @@ impl<'a, const N: usize> CutWalls<'a, N> {
         walls: impl Iterator<Item = (usize, [Option<WallError>; N])>,
     ) -> Self {
         let start = machine.path.working().start;
-        let mut makers = Makers::of(machine, heights, |maker| states.get(maker - start).copied());
+        let mut makers = Makers::of(machine, heights, |maker| states.get(maker.checked_sub(start)?).copied());
         let (places, made) = walls
             .map(|(place, column)| {
                 let made = std::array::from_fn(|height| {
@@ -297,7 +297,7 @@ impl<'a, const N: usize> CutWalls<'a, N> {
         // By how much its deflection is another one hardly changes from place to place.
         let (mut kept, mut change) = (Kept::default(), Vector::ZERO);
         let state = |maker: usize| {
-            let State { commanded, displacement, .. } = *states.get(maker - start)?;
+            let State { commanded, displacement, .. } = *states.get(maker.checked_sub(start)?)?;
             let (state, _) = other.state(&mut kept, maker, commanded, displacement + change)?;
             change = state.displacement - displacement;
             Some(state)
