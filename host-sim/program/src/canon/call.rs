@@ -9,6 +9,7 @@ use truepath_core::gcode::{
 use truepath_core::geometry::Side;
 use truepath_core::units::{Position, Real};
 
+use super::argument::Places;
 use super::lines::Lines;
 use super::options::CanonOptions;
 
@@ -21,6 +22,8 @@ pub(super) struct Calls<'a, W> {
     pub(super) lines: Lines<W>,
     /// Where the axes stand, nanometres.
     pub(super) at: [i64; 3],
+    /// The text of that.
+    pub(super) places: Places,
     coolant: [bool; 2],
     work_offset: u16,
 }
@@ -28,7 +31,7 @@ pub(super) struct Calls<'a, W> {
 impl<'a, W: Write> Calls<'a, W> {
     /// With the calls by which the reference begins.
     pub(super) fn new(options: &'a CanonOptions, out: W) -> Self {
-        let mut calls = Self { options, lines: Lines::new(out), at: [0; 3], coolant: [false; 2], work_offset: 1 };
+        let mut calls = Self { options, lines: Lines::new(out), at: [0; 3], places: Places::new(MILLION), coolant: [false; 2], work_offset: 1 };
         calls.begin();
         calls
     }

@@ -2,7 +2,9 @@
 
 use std::io::{self, Write};
 
-use super::number::{Count, Short, push_ratio, push_real, push_separated, push_whole, short_ratio};
+use super::argument::Argument;
+use super::call::MILLION;
+use super::number::{Count, SHORT, Short, push_ratio, push_real, push_whole};
 
 /// Bytes gathered before they are written.
 const PIECE: usize = 1 << 16;
@@ -10,36 +12,35 @@ const PIECE: usize = 1 << 16;
 /// Of a block without an N word.
 const NO_LABEL: &[u8; 7] = b"N..... ";
 
+/// Room for a line of a move whose numbers are short: more than its number, label, name, six arguments and end.
+const ROOM: usize = 12 * SHORT;
+
+/// Bytes made ready behind the text at a time, for some lines.
+const AHEAD: usize = 8 * ROOM;
+
+/// The axes that turn while they stand at zero, and the end of the line.
+const NOT_TURNED: &[u8; 24] = b"0.0000, 0.0000, 0.0000)\n";
+
 /// The text being written.
 pub(super) struct Lines<W> {
     out: W,
     text: Vec<u8>,
+    /// Where the text ends, when there is room made ready behind it.
+    end: Option<usize>,
     /// Of the last line.
     count: Count,
     /// `N10   ` or `N..... `.
     label: Vec<u8>,
     /// Whether it names a block.
     labelled: bool,
-    /// The last place of each axis.
-    places: [Place; 3],
     /// What the writer answered when it failed; nothing is written after that.
     failed: Option<io::Error>,
-}
-
-/// Where an axis stands: it often stays there for many lines.
-#[derive(Clone, Copy, Default)]
-struct Place {
-    value: i64,
-    unit: i64,
-    /// `None` when it is too long, or not written yet.
-    text: Option<Short>,
 }
 
 impl<W: Write> Lines<W> {
     pub(super) fn new(out: W) -> Self {
         let text = Vec::with_capacity(PIECE * 2);
-        let places = [Place::default(); 3];
-        Self { out, text, count: Count::new(), label: NO_LABEL.to_vec(), labelled: false, places, failed: None }
+        Self { out, text, end: None, count: Count::new(), label: NO_LABEL.to_vec(), labelled: false, failed: None }
     }
 
     /// The N word of the block the next lines belong to, its digits before the point.
@@ -62,34 +63,33 @@ impl<W: Write> Lines<W> {
         self.label.push(b' ');
     }
 
+    /// The text, to be gone on with.
+    #[inline]
+    fn text(&mut self) -> &mut Vec<u8> {
+        if let Some(end) = self.end.take() {
+            self.text.truncate(end);
+        }
+        &mut self.text
+    }
+
     /// Begins a line with the name of a call: everything up to its opening parenthesis.
     pub(super) fn open(&mut self, name: &str) {
-        self.begin();
-        self.text.extend_from_slice(name.as_bytes());
+        self.count.next();
+        self.begin(name.as_bytes());
         self.text.push(b'(');
     }
 
-    /// The same of a call that moves, whose name brings its parenthesis along.
-    #[inline]
-    pub(super) fn open_move<const N: usize>(&mut self, name: &[u8; N]) {
-        self.begin();
+    /// The number of the line, its label and a name.
+    fn begin(&mut self, name: &[u8]) {
+        self.text();
+        self.count.push(&mut self.text);
+        self.text.extend_from_slice(&self.label);
         self.text.extend_from_slice(name);
     }
 
-    /// The number and the label.
-    #[inline]
-    fn begin(&mut self) {
-        self.count.push_next(&mut self.text);
-        match self.label.first_chunk::<7>() {
-            Some(label) if self.label.len() == 7 => self.text.extend_from_slice(label),
-            _ => self.text.extend_from_slice(&self.label),
-        }
-    }
-
     /// Ends it.
-    #[inline]
     pub(super) fn close(&mut self) {
-        self.text.extend_from_slice(b")\n");
+        self.text().extend_from_slice(b")\n");
         if self.text.len() >= PIECE {
             self.pass_on();
         }
@@ -113,64 +113,73 @@ impl<W: Write> Lines<W> {
 
     /// A line that is no call: what a program prints.
     pub(super) fn bare(&mut self, text: &[u8]) {
-        self.text.extend_from_slice(text);
+        self.text().extend_from_slice(text);
         self.text.push(b'\n');
     }
 
     pub(super) fn push(&mut self, text: &str) {
-        self.text.extend_from_slice(text.as_bytes());
+        self.text().extend_from_slice(text.as_bytes());
     }
     pub(super) fn push_whole(&mut self, number: u64) {
-        push_whole(&mut self.text, number);
+        push_whole(self.text(), number);
     }
     pub(super) fn push_real(&mut self, value: f64) {
-        push_real(&mut self.text, value);
+        push_real(self.text(), value);
     }
 
-    /// Lengths, each with the separator behind it.
+    /// A call that moves: its name with the parenthesis, its arguments, and where the axes that turn stand.
     #[inline]
-    pub(super) fn push_lengths<const N: usize>(&mut self, values: [i64; N], unit: i64) {
-        for value in values {
-            push_separated(&mut self.text, value, unit);
+    pub(super) fn call_move<const N: usize, const A: usize>(
+        &mut self,
+        name: &[u8; N],
+        arguments: &[Argument; A],
+        unit: i64,
+        turned: [i64; 3],
+    ) {
+        let count = self.count.next();
+        let start = self.end.unwrap_or(self.text.len());
+        if self.text.len() < start + ROOM {
+            self.text.resize(start + AHEAD, 0);
+        }
+        self.end = Some(start);
+        let room = self.text.get_mut(start..).and_then(|rest| rest.first_chunk_mut());
+        let written = match (room, count, self.label.as_array()) {
+            (Some(line), Some(count), Some(label)) if turned == [0; 3] => write_move(line, count, label, name, arguments),
+            _ => None,
+        };
+        let Some(length) = written else { return self.call_long_move(name, arguments, unit, turned) };
+        self.end = Some(start + length);
+        if start + length >= PIECE {
+            self.pass_on();
         }
     }
 
-    /// The place of an axis, with the separator behind it.
-    #[inline]
-    pub(super) fn push_place(&mut self, axis: usize, value: i64, unit: i64) {
-        let place = &mut self.places[axis];
-        if (place.value, place.unit) != (value, unit) {
-            *place = Place { value, unit, text: short_ratio(value, unit) };
+    /// The same of long numbers, piece by piece.
+    #[cold]
+    fn call_long_move(&mut self, name: &[u8], arguments: &[Argument], unit: i64, turned: [i64; 3]) {
+        self.begin(name);
+        let text = self.text();
+        for argument in arguments {
+            argument.push(text, unit);
         }
-        match place.text {
-            Some(text) => text.push(&mut self.text),
-            None => push_separated(&mut self.text, value, unit),
-        }
-    }
-
-    /// The axes that turn, and the end of the line.
-    #[inline]
-    pub(super) fn close_turned(&mut self, turned: [i64; 3], unit: i64) {
-        if turned == [0; 3] {
-            self.text.extend_from_slice(b"0.0000, 0.0000, 0.0000");
-        } else {
-            self.push_values(&turned.map(|value| (value, unit)), ", ");
-        }
+        self.push_values(&turned.map(|value| (value, MILLION)), ", ");
         self.close();
     }
 
     /// Values in their units, separated.
     pub(super) fn push_values(&mut self, values: &[(i64, i64)], separator: &str) {
+        let text = self.text();
         for (index, (value, unit)) in values.iter().enumerate() {
             if index > 0 {
-                self.text.extend_from_slice(separator.as_bytes());
+                text.extend_from_slice(separator.as_bytes());
             }
-            push_ratio(&mut self.text, *value, *unit);
+            push_ratio(text, *value, *unit);
         }
     }
 
     #[cold]
     fn pass_on(&mut self) {
+        self.text();
         if self.failed.is_none()
             && let Err(error) = self.out.write_all(&self.text)
         {
@@ -190,6 +199,33 @@ impl<W: Write> Lines<W> {
             None => self.out.flush(),
         }
     }
+}
+
+/// Writes the line of a move into room for it; gives its length, `None` when a number is long.
+#[inline]
+fn write_move<const N: usize, const A: usize>(
+    line: &mut [u8; ROOM],
+    count: Short,
+    label: &[u8; 7],
+    name: &[u8; N],
+    arguments: &[Argument; A],
+) -> Option<usize> {
+    let mut at = count.put(line, 0);
+    at = put(line, at, label);
+    at = put(line, at, name);
+    for argument in arguments {
+        at = argument.short()?.put(line, at);
+    }
+    Some(put(line, at, NOT_TURNED))
+}
+
+/// Puts bytes down at a place; gives the place behind them.
+#[inline]
+fn put<const N: usize>(line: &mut [u8], at: usize, bytes: &[u8; N]) -> usize {
+    if let Some(place) = line.get_mut(at..).and_then(|rest| rest.first_chunk_mut()) {
+        *place = *bytes;
+    }
+    at.wrapping_add(N)
 }
 
 #[cfg(test)]

@@ -9,13 +9,14 @@
 //! |---|---|
 //! | `printer.rs` | the order of the calls of a block |
 //! | `call.rs`, `moves.rs`, `comment.rs` | the calls |
-//! | `lines.rs`, `number.rs` | the text |
+//! | `lines.rs`, `argument.rs`, `number.rs` | the text |
 //! | `options.rs`, `tool_table.rs`, `parameter_file.rs` | what is known of control and machine |
 //!
 //! Limits: what the interpreter of the core does not execute is an error, as everywhere; a zero never carries a minus
 //! sign; the exact-path switches around the moves of canned cycles are left out; M codes that are not known are shown
 //! as a comment.
 
+mod argument;
 mod call;
 mod comment;
 mod lines;

@@ -6,7 +6,8 @@ use truepath_core::gcode::{Axes, Canon, FeedMode, Modal, Plane};
 use truepath_core::geometry::Point;
 use truepath_core::units::Position;
 
-use super::call::{Calls, MILLION, real};
+use super::argument::Argument;
+use super::call::{Calls, real};
 
 /// An arc in any plane: its ends and centre in the order of the plane's axes.
 struct Arc {
@@ -81,12 +82,8 @@ impl<W: Write> Calls<'_, W> {
     #[inline]
     fn straight<const N: usize>(&mut self, name: &[u8; N], modal: &Modal) {
         let [a, b, c, ..] = modal.auxiliary;
-        self.lines.open_move(name);
         let unit = modal.units.nanometres();
-        for (axis, at) in self.at.into_iter().enumerate() {
-            self.lines.push_place(axis, at, unit);
-        }
-        self.lines.close_turned([a, b, c], MILLION);
+        self.lines.call_move(name, self.places.at(self.at, unit), unit, [a, b, c]);
     }
 
     fn arc(&mut self, arc: &Arc, modal: &Modal) {
@@ -106,16 +103,11 @@ impl<W: Write> Calls<'_, W> {
         self.go(arc.to);
         let unit = modal.units.nanometres();
         let [a, b, c, ..] = modal.auxiliary;
-        self.lines.open_move(b"ARC_FEED(");
-        for axis in [first, second] {
-            self.lines.push_place(axis, self.at[axis], unit);
-        }
-        self.lines.push_lengths([arc.centre.x.nm(), arc.centre.y.nm()], unit);
-        self.lines.push(if arc.counter_clockwise { "" } else { "-" });
-        self.lines.push_whole(turns.unsigned_abs());
-        self.lines.push(", ");
-        self.lines.push_place(third, self.at[third], unit);
-        self.lines.close_turned([a, b, c], MILLION);
+        let places = self.places.at(self.at, unit);
+        let (x, y, z) = (places[first], places[second], places[third]);
+        let (i, j) = (Argument::length(arc.centre.x.nm(), unit), Argument::length(arc.centre.y.nm(), unit));
+        let turns = Argument::turns(!arc.counter_clockwise, turns);
+        self.lines.call_move(b"ARC_FEED(", &[x, y, i, j, turns, z], unit, [a, b, c]);
     }
 
     /// In G93 the feed of a move is its length by the time F gives.

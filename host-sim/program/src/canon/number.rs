@@ -11,18 +11,50 @@ const SEPARATOR: &[u8; 2] = b", ";
 /// The first number of more than eight digits.
 const NINE_DIGITS: u64 = 100_000_000;
 
-/// A text of at most sixteen bytes, the first of them lowest.
+/// A short text in two pieces of at most eight bytes, the first byte of each lowest. Each is put down as a whole word; what the
+/// word has too much is overwritten by what follows.
 #[derive(Clone, Copy)]
 pub(super) struct Short {
-    bytes: u128,
-    length: usize,
+    head: u64,
+    tail: u64,
+    head_length: u8,
+    length: u8,
 }
 
+/// Bytes of which a short text uses no more.
+pub(super) const SHORT: usize = 16;
+
 impl Short {
+    /// How often an arc turns, with its direction, and the separator.
+    pub(super) fn turns(clockwise: bool, turns: u64) -> Self {
+        let mut text = Vec::with_capacity(SHORT);
+        if clockwise {
+            text.push(b'-');
+        }
+        push_whole(&mut text, turns);
+        text.extend_from_slice(SEPARATOR);
+        let length = text.len();
+        text.resize(SHORT, 0);
+        let words: &[[u8; 8]] = text.as_chunks().0;
+        let [head, tail] = [words[0], words[1]].map(u64::from_le_bytes);
+        Self { head, tail, head_length: length.min(8) as u8, length: length as u8 }
+    }
+
+    /// Puts it down at a place, with up to [`SHORT`] bytes overwritten; gives the place behind it.
     #[inline]
+    pub(super) fn put(self, out: &mut [u8], at: usize) -> usize {
+        for (place, word) in [(at, self.head), (at.wrapping_add(self.head_length.into()), self.tail)] {
+            if let Some(bytes) = out.get_mut(place..).and_then(|rest| rest.first_chunk_mut()) {
+                *bytes = word.to_le_bytes();
+            }
+        }
+        at.wrapping_add(self.length.into())
+    }
+
     pub(super) fn push(self, out: &mut Vec<u8>) {
-        let end = out.len() + self.length;
-        out.extend_from_slice(&self.bytes.to_le_bytes());
+        let start = out.len();
+        out.extend_from_slice(&[0; SHORT]);
+        let end = self.put(out, start);
         out.truncate(end);
     }
 }
@@ -53,18 +85,18 @@ pub(super) fn short_ratio(value: i64, unit: i64) -> Option<Short> {
 #[inline]
 fn ten_thousandths(value: i64, unit: i64) -> Option<u64> {
     // Division by a constant is a product.
-    let (digits, twice_rest, divisor) = match unit {
+    let (digits, rest, divisor) = match unit {
         1_000_000 => divided::<100>(value),
         25_400_000 => divided::<2_540>(value),
         _ => return None,
     };
-    if twice_rest == divisor { None } else { Some(digits + u64::from(twice_rest > divisor)) }
+    if rest == divisor / 2 { None } else { Some(digits.wrapping_add(u64::from(rest > divisor / 2))) }
 }
 
 #[inline]
 fn divided<const BY: u64>(value: i64) -> (u64, u64, u64) {
     let magnitude = value.unsigned_abs();
-    (magnitude / BY, magnitude % BY * 2, BY)
+    (magnitude / BY, magnitude % BY, BY)
 }
 
 #[cold]
@@ -107,27 +139,27 @@ fn push_digits(out: &mut Vec<u8>, minus: bool, ten_thousandths: u64) {
     out.extend_from_slice(SEPARATOR);
 }
 
-/// The same of at most eight digits: as one number of 16 bytes, from which the zeros in front are shifted out.
+/// The same of at most eight digits.
 #[inline]
 fn few_digits(minus: bool, ten_thousandths: u64) -> Short {
     let digits = eight_digits(ten_thousandths);
     // The last digit before the point stays.
     let zeros = zeros_in_front(digits).min(3);
-    let (whole, part) = (digits & 0xFFFF_FFFF, digits >> 32);
-    let text = u128::from(whole) | (u128::from(b'.') << 32) | (u128::from(part) << 40);
-    let text = (text | (u128::from(u16::from_le_bytes(*SEPARATOR)) << 72)) >> (8 * zeros);
-    let bytes = if minus { (text << 8) | u128::from(b'-') } else { text };
-    Short { bytes, length: 9 + SEPARATOR.len() - zeros as usize + usize::from(minus) }
+    let whole = (digits & 0xFFFF_FFFF) >> (8 * zeros);
+    let head = if minus { (whole << 8) | u64::from(b'-') } else { whole };
+    let tail = u64::from(b'.') | ((digits >> 32) << 8) | (u64::from(u16::from_le_bytes(*SEPARATOR)) << 40);
+    let head_length = 4u8.wrapping_sub(zeros as u8).wrapping_add(u8::from(minus));
+    Short { head, tail, head_length, length: head_length.wrapping_add(7) }
 }
 
 /// The digits of a number below 10⁸, the first in the lowest byte: two halves, four quarters, eight digits at once.
 #[inline]
 const fn eight_digits(number: u64) -> u64 {
     let fours = (number / 10_000) | ((number % 10_000) << 32);
-    let hundreds = ((fours * 10_486) >> 20) & 0x7F_0000_007F;
-    let twos = hundreds | ((fours - hundreds * 100) << 16);
-    let tens = ((twos * 103) >> 10) & 0x000F_000F_000F_000F;
-    tens | ((twos - tens * 10) << 8) | 0x3030_3030_3030_3030
+    let hundreds = (fours.wrapping_mul(10_486) >> 20) & 0x7F_0000_007F;
+    let twos = hundreds | (fours.wrapping_sub(hundreds.wrapping_mul(100)) << 16);
+    let tens = (twos.wrapping_mul(103) >> 10) & 0x000F_000F_000F_000F;
+    tens | (twos.wrapping_sub(tens.wrapping_mul(10)) << 8) | 0x3030_3030_3030_3030
 }
 
 /// How many of eight digits are zeros in front, 7 of a zero.
@@ -142,7 +174,7 @@ pub(super) struct Count {
     /// `None` from nine digits on.
     text: Option<Short>,
     /// What changes the last digit by one.
-    one: u128,
+    one: u64,
 }
 
 impl Count {
@@ -153,13 +185,19 @@ impl Count {
         count
     }
 
+    /// Counts one on; gives its text when it is short.
     #[inline]
-    pub(super) fn push_next(&mut self, out: &mut Vec<u8>) {
+    pub(super) fn next(&mut self) -> Option<Short> {
         self.number += 1;
         match &mut self.text {
-            Some(text) if !self.number.is_multiple_of(10) => text.bytes += self.one,
+            Some(text) if !self.number.is_multiple_of(10) => text.head += self.one,
             _ => self.write(),
         }
+        self.text
+    }
+
+    /// Appends the present number.
+    pub(super) fn push(&self, out: &mut Vec<u8>) {
         match self.text {
             Some(text) => text.push(out),
             None => {
@@ -174,10 +212,11 @@ impl Count {
             let digits = eight_digits(self.number);
             let zeros = zeros_in_front(digits);
             let blanks = 0x1010_1010_1010_1010 & ((1 << (8 * zeros)) - 1);
-            let text = u128::from(digits ^ blanks) | (u128::from(b' ') << 64);
             let left_out = zeros.min(3);
             self.one = 1 << (8 * (7 - left_out));
-            Short { bytes: text >> (8 * left_out), length: 9 - left_out as usize }
+            let head_length = 8 - left_out as u8;
+            let head = (digits ^ blanks) >> (8 * left_out);
+            Short { head, tail: u64::from(b' '), head_length, length: head_length + 1 }
         });
     }
 }
@@ -214,7 +253,10 @@ mod tests {
             let mut out = Vec::new();
             let mut count = Count { number, ..Count::new() };
             count.write();
-            (1..=20).for_each(|_| count.push_next(&mut out));
+            (1..=20).for_each(|_| {
+                count.next();
+                count.push(&mut out);
+            });
             let expected: String = (1..=20).map(|next| format!("{:5} ", number + next)).collect();
             assert_eq!(String::from_utf8(out).unwrap(), expected);
         }
