@@ -57,6 +57,11 @@ impl<'s> BlockWords<'s> {
         Ok(())
     }
 
+    /// All of them, in the order of the text.
+    pub(super) const fn words(&self) -> &'s [Word] {
+        self.words
+    }
+
     const fn has_words(&self) -> bool {
         self.present != 0 || self.groups != 0
     }

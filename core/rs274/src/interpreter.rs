@@ -16,8 +16,7 @@ use super::corner::CornerStage;
 use super::execute::Execution;
 use super::flow::{Next, Reader, Sentence};
 use super::{
-    GcodeError, Line, Memory, Options, Program, Sink, Source, WarningKind, Warnings, Word, is_marked_corrected,
-    program_crc,
+    GcodeError, Line, Memory, Options, Program, Sink, Source, WarningKind, Warnings, Word,
 };
 
 /// A block that was executed.
@@ -42,10 +41,6 @@ pub struct ProgramSummary {
     pub end: Option<u32>,
     /// Lines read, to the end of the program.
     pub lines: u32,
-    /// [`program_crc`] of the bytes.
-    pub crc: u32,
-    /// Whether it carries the mark of a corrected program.
-    pub already_corrected: bool,
     /// What deserves a look.
     pub warnings: Warnings,
 }
@@ -76,7 +71,7 @@ impl<'t> Interpreter<'t> {
     where
         't: 'p,
     {
-        self.run_observed(program.into(), memory, sink, &mut |_| ())
+        self.execute(program.into(), memory, sink, None)
     }
 
     /// The same as [`Self::run`]; every block that is executed is given to `observe`. Statements of control flow and lines that only assign
@@ -94,6 +89,19 @@ impl<'t> Interpreter<'t> {
     where
         't: 'p,
     {
+        self.execute(program, memory, sink, Some(observe))
+    }
+
+    fn execute<'p>(
+        &self,
+        program: Program<'p>,
+        memory: &mut Memory<'_>,
+        sink: &mut Sink<'_>,
+        mut observe: Option<&mut dyn FnMut(&Executed<'_>)>,
+    ) -> Result<ProgramSummary, GcodeError>
+    where
+        't: 'p,
+    {
         memory.start(self.options.dialect);
         let mut reader = Reader::new(program, &self.options);
         let mut warnings = Warnings::default();
@@ -107,12 +115,14 @@ impl<'t> Interpreter<'t> {
         let mut execution = Execution::new(self.options, memory, stages, warnings, sink);
         while reader.next(&mut execution, &mut sentence)? {
             let next = execution.sentence(&sentence)?;
-            observe(&Executed {
-                source: sentence.source,
-                line: sentence.line,
-                words: &sentence.words,
-                steers: !matches!(next, Next::Continue | Next::End),
-            });
+            if let Some(observe) = &mut observe {
+                observe(&Executed {
+                    source: sentence.source,
+                    line: sentence.line,
+                    words: &sentence.words,
+                    steers: !matches!(next, Next::Continue | Next::End),
+                });
+            }
             if next != Next::Continue {
                 reader.follow(next, &sentence, &mut execution)?;
             }
@@ -129,8 +139,6 @@ impl<'t> Interpreter<'t> {
             number: execution.program_number,
             end: execution.end,
             lines: sentence.source.line,
-            crc: program_crc(program.text),
-            already_corrected: is_marked_corrected(program.text),
             warnings: execution.warnings,
         })
     }

@@ -125,6 +125,17 @@ impl Execution<'_, '_, '_> {
         if to.nm().unsigned_abs() > FARTHEST_NM { Err(self.out_of_range(word)) } else { Ok(Some(to)) }
     }
 
+    /// The same, when nothing is to be said about it; `None` where [`Self::target`] decides.
+    #[inline]
+    pub(super) fn silent_target(&self, word: &Word, axis: usize) -> Option<Position> {
+        if self.reads_points || !self.units_given {
+            return None;
+        }
+        let by = word.value.nanometres(self.modal.units).filter(|nm| nm.unsigned_abs() <= FARTHEST_NM)?;
+        let from = if self.modal.absolute { Position::ZERO } else { self.at.get(axis)? };
+        Some(from + Offset::from_nm(by)).filter(|to| to.nm().unsigned_abs() <= FARTHEST_NM)
+    }
+
     /// Uses the axis words: where they lead. Axes that turn, U, V and W are moved at once.
     pub(super) fn destination(&mut self, block: &mut BlockWords<'_>) -> Result<Axes, GcodeError> {
         let mut to = self.at;

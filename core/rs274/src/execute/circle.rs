@@ -1,7 +1,9 @@
 //! G2 and G3 in the three planes, with the third axis moving along (helix) and extra turns (P).
 
 use super::super::block::BlockWords;
-use super::super::{ArcCentres, Axes, Canon, Decimal, GcodeError, GcodeErrorKind, Number, Plane, Units, WarningKind};
+use super::super::{
+    ArcCentres, Axes, Canon, Decimal, GcodeError, GcodeErrorKind, Number, Plane, Units, WarningKind, Word,
+};
 use super::Execution;
 use super::arc::{absolute_centre, centre_from_offsets, centre_from_radius};
 use super::cycle::centre_letter;
@@ -17,22 +19,36 @@ const TURNS: u32 = 10_000;
 
 impl Execution<'_, '_, '_> {
     pub(super) fn arc(&mut self, block: &mut BlockWords<'_>, counter_clockwise: bool) -> Result<(), GcodeError> {
-        let span = self.block_span();
-        let plane = self.modal.plane;
-        let from = self.at;
         let to = self.destination(block)?;
-        let start = self.known_point(from)?;
-        let end = self.known_point(to)?;
+        let (start, end) = self.arc_ends(to)?;
         let turns = match block.use_word(b'P') {
             Some(word) => self.between(word, 1, TURNS)?.saturating_sub(1),
             None => 0,
         };
-        let digit = self.last_digit(block);
         let centre = self.centre(block, start, end, counter_clockwise)?;
-        let (centre, curve) = self.curve(start, end, centre, counter_clockwise, digit)?;
+        self.arc_about(centre, to, turns, counter_clockwise, block.words())
+    }
+
+    /// Where an arc to a place begins and ends in its plane.
+    pub(super) fn arc_ends(&self, to: Axes) -> Result<(Point, Point), GcodeError> {
+        Ok((self.known_point(self.at)?, self.known_point(to)?))
+    }
+
+    /// Moves along the arc about a centre, or about the other one that its words may mean.
+    pub(super) fn arc_about(
+        &mut self,
+        centre: (Point, Option<Point>),
+        to: Axes,
+        turns: u32,
+        counter_clockwise: bool,
+        words: &[Word],
+    ) -> Result<(), GcodeError> {
+        let (start, end) = self.arc_ends(to)?;
+        let (centre, curve) = self.curve(start, end, centre, counter_clockwise, words)?;
         self.check_feed()?;
         self.check_revolutions()?;
-        self.at = to;
+        let (span, plane) = (self.block_span(), self.modal.plane);
+        let from = core::mem::replace(&mut self.at, to);
         let canon = if plane == Plane::Xy {
             Canon::Arc { from, to, curve, centre, counter_clockwise, turns }
         } else {
@@ -88,9 +104,8 @@ impl Execution<'_, '_, '_> {
         end: Point,
         (centre, absolute): (Point, Option<Point>),
         ccw: bool,
-        digit: i64,
+        words: &[Word],
     ) -> Result<(Point, Curve), GcodeError> {
-        let span = self.block_span();
         let tolerance = if self.modal.units == Units::Inches { INCH_TOLERANCE } else { ARC_TOLERANCE };
         let about = |centre| Curve::arc_within(start, end, centre, ccw, tolerance);
         let error = match about(centre) {
@@ -102,6 +117,7 @@ impl Execution<'_, '_, '_> {
             }
             Err(error) => error,
         };
+        let span = self.block_span();
         // A full circle is one about any centre.
         let other = absolute
             .filter(|other| *other != centre && start != end)
@@ -114,6 +130,7 @@ impl Execution<'_, '_, '_> {
             }
             other => {
                 if let ArcError::RadiusMismatch { start: a, end: b } = error {
+                    let digit = self.last_digit(words);
                     let limit = tolerance.nm().max(a.nm().min(b.nm()) / 1000).saturating_add(digit);
                     let wider = Curve::arc_within(start, end, centre, ccw, Offset::from_nm(limit));
                     if let Ok(curve) = wider
@@ -131,12 +148,12 @@ impl Execution<'_, '_, '_> {
 
     /// What the rounding of the numbers of an arc can change of its radii: √2 times the last digit of its most exact
     /// word at each end, no more than 0.01 mm or 0.001 in each; nothing without a decimal.
-    fn last_digit(&self, block: &BlockWords<'_>) -> i64 {
-        let decimals = |letter| match block.word(letter).map(|word| word.value) {
-            Some(Number::Exact(number)) => number.decimals(),
+    fn last_digit(&self, words: &[Word]) -> i64 {
+        let decimals = |word: &Word| match word.value {
+            Number::Exact(number) if b"XYZIJK".contains(&word.letter) => number.decimals(),
             _ => 0,
         };
-        let most = b"XYZIJK".iter().map(|&letter| decimals(letter)).max().unwrap_or(0);
+        let most = words.iter().map(decimals).max().unwrap_or(0);
         let (unit, coarsest) = match self.modal.units {
             Units::Millimetres => (1_000_000, 10_000),
             Units::Inches => (25_400_000, 25_400),

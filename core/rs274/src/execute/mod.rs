@@ -170,7 +170,7 @@ impl<'p, 's, 'm> Execution<'p, 's, 'm> {
         self.text = sentence.text;
         self.line = sentence.line;
         self.source = sentence.source;
-        if self.plain_move(sentence)? {
+        if self.plain_block(sentence)? {
             return Ok(Next::Continue);
         }
         if !sentence.is_plain && sentence.line.text.contains(&b'\r') {
@@ -263,6 +263,10 @@ impl<'p, 's, 'm> Execution<'p, 's, 'm> {
     /// The bytes of the block without the blanks around them.
     pub(super) fn block_span(&self) -> Span {
         let text = self.line.text;
+        let is_blank = |byte: Option<&u8>| byte.is_none_or(u8::is_ascii_whitespace);
+        if !is_blank(text.first()) && !is_blank(text.last()) && !self.options.dialect.is_klartext() {
+            return self.line.span();
+        }
         let mut behind = text.trim_ascii_start();
         if self.options.dialect.is_klartext() {
             // The block number is no part of it.

@@ -45,6 +45,14 @@ fn words(line: &Line<'_>, sentence: &mut Sentence<'_>) -> Option<()> {
     Some(())
 }
 
+/// Inside of the comment that a line is, when it is one in parentheses without others in it, and nothing else: no carriage return,
+/// of which the long way warns.
+pub(super) fn remark(line: &Line<'_>) -> Option<Span> {
+    let [b'(', body @ .., b')'] = line.text else { return None };
+    let lone = !body.iter().any(|byte| matches!(byte, b'(' | b')' | b'\r'));
+    lone.then(|| Span { start: line.start.saturating_add(1), len: body.len() })
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::super::{Token, Words};

@@ -130,12 +130,18 @@ impl<'p> Reader<'p> {
         sentence.words.clear();
         sentence.block_delete = None;
         sentence.has_comments = false;
+        sentence.remark = None;
         #[cfg(feature = "klartext")]
         if self.dialect.is_klartext() {
             return self.klartext(machine, sentence);
         }
         sentence.is_plain = plain::read(&line, sentence);
-        if sentence.is_plain { Ok(Read::Block) } else { self.tokens(machine, sentence) }
+        if sentence.is_plain {
+            return Ok(Read::Block);
+        }
+        sentence.remark = plain::remark(&line);
+        sentence.has_comments = sentence.remark.is_some();
+        if sentence.has_comments { Ok(Read::Block) } else { self.tokens(machine, sentence) }
     }
 
     /// Reads a line token by token.

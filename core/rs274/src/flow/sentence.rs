@@ -40,6 +40,8 @@ pub(in super::super) struct Sentence<'p> {
     pub(in super::super) has_comments: bool,
     /// Whether it is nothing but letters with written numbers, spaces and tabs.
     pub(in super::super) is_plain: bool,
+    /// Inside of its comment, when it is nothing but one in parentheses.
+    pub(in super::super) remark: Option<Span>,
     /// What a conversational block does, and what stands behind the words that say so.
     #[cfg(feature = "klartext")]
     pub(in super::super) statement: super::super::Statement,
@@ -61,6 +63,7 @@ impl<'p> Sentence<'p> {
             block_delete: None,
             has_comments: false,
             is_plain: false,
+            remark: None,
             #[cfg(feature = "klartext")]
             statement: super::super::Statement::Empty,
             #[cfg(feature = "klartext")]
