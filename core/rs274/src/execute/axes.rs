@@ -11,7 +11,7 @@ use truepath_units::geometry::Point;
 use truepath_units::{Offset, Position, Real, atan2, hypot_nm};
 
 /// The farthest coordinate and the longest length word, 100 m; for angles 100,000 degrees.
-const FARTHEST_NM: u64 = 100_000_000_000;
+pub(super) const FARTHEST_NM: u64 = 100_000_000_000;
 
 /// Letters of moves: axes, and the polar words of LinuxCNC.
 pub(super) const PLACE_LETTERS: [u8; 11] = *b"XYZABCUVW@^";
@@ -123,17 +123,6 @@ impl Execution<'_, '_, '_> {
         let Some(from) = from else { return Ok(None) };
         let to = from + by;
         if to.nm().unsigned_abs() > FARTHEST_NM { Err(self.out_of_range(word)) } else { Ok(Some(to)) }
-    }
-
-    /// The same, when nothing is to be said about it; `None` where [`Self::target`] decides.
-    #[inline]
-    pub(super) fn silent_target(&self, word: &Word, axis: usize) -> Option<Position> {
-        if self.reads_points || !self.units_given {
-            return None;
-        }
-        let by = word.value.nanometres(self.modal.units).filter(|nm| nm.unsigned_abs() <= FARTHEST_NM)?;
-        let from = if self.modal.absolute { Position::ZERO } else { self.at.get(axis)? };
-        Some(from + Offset::from_nm(by)).filter(|to| to.nm().unsigned_abs() <= FARTHEST_NM)
     }
 
     /// Uses the axis words: where they lead. Axes that turn, U, V and W are moved at once.

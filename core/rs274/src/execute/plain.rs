@@ -1,49 +1,34 @@
 //! The commonest blocks: G0 or G1 with X, Y, Z and F, or some of them; G2 or G3 with I and J beside these; one comment.
 //!
 //! The steps are those of [`execute`](Execution::execute) that such a block comes to, in the same order; all others are left out
-//! without a look at each.
+//! without a look at each. Where the words of a block have more to say than where it leads (a warning, an error), it takes the long way.
 
 use super::super::flow::Sentence;
-use super::super::{Axes, Canon, GcodeError, Motion, Plane, Word};
+use super::super::{Axes, Canon, GcodeError, Motion, Number, Plane, Word};
 use super::Execution;
 use super::arc::{absolute_centre, centre_from_offsets};
+use super::axes::FARTHEST_NM;
+use truepath_units::{Offset, Position};
 
-/// The words of such a block, each once.
-#[derive(Default)]
-struct Words<'w> {
-    axes: [Option<&'w Word>; 3],
+/// What the words of such a block say, each written once.
+struct Said<'w> {
+    to: Axes,
     /// I and J.
-    centre: [Option<&'w Word>; 2],
+    centre: [Option<Offset>; 2],
     feed: Option<&'w Word>,
     code: Option<&'w Word>,
+    /// The letters that stand here.
+    letters: u32,
 }
 
-impl<'w> Words<'w> {
-    /// `None` when there is any other, or one twice.
-    fn of(words: &'w [Word]) -> Option<Self> {
-        let mut found = Self::default();
-        let ([x, y, z], [i, j]) = (&mut found.axes, &mut found.centre);
-        for word in words {
-            let place = match word.letter {
-                b'X' => &mut *x,
-                b'Y' => &mut *y,
-                b'Z' => &mut *z,
-                b'I' => &mut *i,
-                b'J' => &mut *j,
-                b'F' => &mut found.feed,
-                b'G' => &mut found.code,
-                _ => return None,
-            };
-            if place.replace(word).is_some() {
-                return None;
-            }
-        }
-        Some(found)
-    }
+/// A letter in a set of capital letters.
+const fn bit(letter: u8) -> u32 {
+    1u32.wrapping_shl(letter as u32)
 }
 
 impl<'p> Execution<'p, '_, '_> {
     /// Executes a block that has nothing else; `false`, and nothing done, for any other.
+    #[inline]
     pub(super) fn plain_block(&mut self, sentence: &Sentence<'p>) -> Result<bool, GcodeError> {
         if self.returning.is_some() {
             return Ok(false);
@@ -53,67 +38,88 @@ impl<'p> Execution<'p, '_, '_> {
             self.emit(Canon::Comment(body), sentence.line.span())?;
             return Ok(true);
         }
-        if !sentence.is_plain {
+        if !sentence.is_plain || !self.units_given {
             return Ok(false);
         }
-        let Some(words) = Words::of(&sentence.words) else { return Ok(false) };
-        let motion = match words.code {
+        let Some(said) = self.said(&sentence.words) else { return Ok(false) };
+        let motion = match said.code {
             Some(word) => path(word),
             None => self.modal.motion,
         };
-        let has_centre = words.centre.iter().any(Option::is_some);
+        let has_centre = said.letters & (bit(b'I') | bit(b'J')) != 0;
+        let Some(motion) = motion else { return Ok(false) };
         match motion {
-            Some(Motion::Traverse | Motion::Feed) if !has_centre => {}
-            Some(Motion::Arc { .. })
-                if has_centre && self.modal.plane == Plane::Xy && !self.modal.absolute_centres => {}
+            Motion::Traverse | Motion::Feed if !has_centre => {}
+            Motion::Arc { .. } if has_centre && self.modal.plane == Plane::Xy && !self.modal.absolute_centres => {}
             _ => return Ok(false),
         }
-        let Some(motion) = motion else { return Ok(false) };
-        self.feed_given = words.feed.is_some();
-        if let Some(word) = words.feed {
+        self.feed_given = said.feed.is_some();
+        if let Some(word) = said.feed {
             self.set_feed(*word)?;
         }
-        if let Some(word) = words.code {
+        if let Some(word) = said.code {
             self.set_motion(motion.code(), word.span)?;
         }
         if let Motion::Arc { counter_clockwise } = motion {
-            self.plain_arc(&words, counter_clockwise, &sentence.words)?;
-        } else if words.axes.iter().any(Option::is_some) || (words.code.is_some() && self.options.machine.is_some()) {
-            let to = self.plain_place(&words)?;
+            let (start, _) = self.arc_ends(said.to)?;
+            let [i, j] = said.centre;
+            let centre = (centre_from_offsets(start, i, j), absolute_centre(i, j, *b"IJ").ok());
+            self.arc_about(centre, said.to, 0, counter_clockwise, &sentence.words)?;
+        } else if said.letters & (bit(b'X') | bit(b'Y') | bit(b'Z')) != 0
+            || (said.code.is_some() && self.options.machine.is_some())
+        {
             let span = self.block_span();
             if motion == Motion::Traverse {
-                self.traverse_to(to, span)?;
+                self.traverse_to(said.to, span)?;
             } else {
                 self.check_feed()?;
                 self.check_revolutions()?;
-                self.feed_to(to, span)?;
+                self.feed_to(said.to, span)?;
             }
         }
         Ok(true)
     }
 
-    /// Where the axes lead.
+    /// `None` when there is any other word, or one twice, or one that the long way has to judge.
     #[inline]
-    fn plain_place(&mut self, words: &Words<'_>) -> Result<Axes, GcodeError> {
-        let mut to = self.at;
-        for (axis, word) in words.axes.into_iter().enumerate() {
-            let Some(word) = word else { continue };
-            match self.silent_target(word, axis) {
-                Some(place) => to.set(axis, Some(place)),
-                None => self.lead(&mut to, axis, word)?,
+    fn said<'w>(&self, words: &'w [Word]) -> Option<Said<'w>> {
+        let mut said = Said { to: self.at, centre: [None; 2], feed: None, code: None, letters: 0 };
+        for word in words {
+            if said.letters & bit(word.letter) != 0 {
+                return None;
+            }
+            said.letters |= bit(word.letter);
+            match word.letter {
+                b'X' => said.to.x = Some(self.leads(word, said.to.x)?),
+                b'Y' => said.to.y = Some(self.leads(word, said.to.y)?),
+                b'Z' => said.to.z = Some(self.leads(word, said.to.z)?),
+                b'I' => said.centre[0] = Some(self.plain_length(word)?),
+                b'J' => said.centre[1] = Some(self.plain_length(word)?),
+                b'F' => said.feed = Some(word),
+                b'G' => said.code = Some(word),
+                _ => return None,
             }
         }
-        Ok(to)
+        Some(said)
     }
 
-    fn plain_arc(&mut self, found: &Words<'_>, counter_clockwise: bool, words: &[Word]) -> Result<(), GcodeError> {
-        let to = self.plain_place(found)?;
-        let (start, _) = self.arc_ends(to)?;
-        let [i, j] = found.centre;
-        let i = i.map(|word| self.length(*word)).transpose()?;
-        let j = j.map(|word| self.length(*word)).transpose()?;
-        let absolute = absolute_centre(i, j, *b"IJ").ok();
-        self.arc_about((centre_from_offsets(start, i, j), absolute), to, 0, counter_clockwise, words)
+    /// Where an axis at a place is led by a word.
+    #[inline]
+    fn leads(&self, word: &Word, at: Option<Position>) -> Option<Position> {
+        let by = self.plain_length(word)?;
+        let from = if self.modal.absolute { Position::ZERO } else { at? };
+        Some(from + by).filter(|to| to.nm().unsigned_abs() <= FARTHEST_NM)
+    }
+
+    /// A written length within reach, of which nothing is to be said.
+    #[inline]
+    fn plain_length(&self, word: &Word) -> Option<Offset> {
+        let Number::Exact(number) = word.value else { return None };
+        if self.reads_points && number.mantissa() != 0 && !word.has_point(self.text) {
+            return None;
+        }
+        let nm = number.in_64(self.modal.units.nanometres())?;
+        if nm.unsigned_abs() <= FARTHEST_NM { Some(Offset::from_nm(nm)) } else { None }
     }
 }
 

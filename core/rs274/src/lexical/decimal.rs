@@ -133,7 +133,7 @@ impl Decimal {
     }
     /// The same, where 64 bits hold it.
     #[inline]
-    pub(super) fn in_64(self, factor: i64) -> Option<i64> {
+    pub(in super::super) fn in_64(self, factor: i64) -> Option<i64> {
         match self.whole_factor(factor).and_then(|whole| self.mantissa.checked_mul(whole)) {
             Some(product) => Some(product),
             None => self.rounded_in_64(factor),
