@@ -139,7 +139,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let terminal = Terminal::new(json, false, colour);
     // Where signals cannot be waited for they end the process as ever, and temporary files stay.
     let _ = interruption::listen();
-    let parsed = command().color(colour).try_get_matches_from(&arguments);
+    // Help is asked of commands that are named: the examples of the others would be made for nothing.
+    let named = |name: &str| arguments.iter().any(|argument| argument == name);
+    let parsed = command_with_examples(named).color(colour).try_get_matches_from(&arguments);
     let outcome = match parsed.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(Arguments { quiet, command, .. }) => {
             let terminal = Terminal::new(json, quiet, colour);
@@ -163,9 +165,13 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 
 /// The command line with its help: commands by what one wants to do, examples below each.
 pub(crate) fn command() -> clap::Command {
+    command_with_examples(|_| true)
+}
+
+fn command_with_examples(wanted: impl Fn(&str) -> bool) -> clap::Command {
     let mut command = Arguments::command();
     let template = help::overview(&command);
-    for (name, examples) in help::examples() {
+    for (name, examples) in help::examples(wanted) {
         // Not every build has every command, and one that is not there cannot be changed.
         if command.find_subcommand(name).is_none() {
             continue;

@@ -172,8 +172,8 @@ fn about(command: &Command, name: &str) -> Option<String> {
 }
 
 /// The examples of every command that has some.
-pub fn examples() -> impl Iterator<Item = (&'static str, String)> {
-    EXAMPLES.into_iter().map(|(name, rows)| {
+pub fn examples(wanted: impl Fn(&str) -> bool) -> impl Iterator<Item = (&'static str, String)> {
+    EXAMPLES.into_iter().filter(move |(name, _)| wanted(name)).map(|(name, rows)| {
         let mut text = String::from("Examples:");
         for (line, what) in rows {
             let _ = write!(text, "\n  {line}\n      {what}");

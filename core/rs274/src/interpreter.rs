@@ -15,9 +15,7 @@ use super::compensation::CompensationStage;
 use super::corner::CornerStage;
 use super::execute::Execution;
 use super::flow::{Next, Reader, Sentence};
-use super::{
-    GcodeError, Line, Memory, Options, Program, Sink, Source, WarningKind, Warnings, Word,
-};
+use super::{GcodeError, Line, Memory, Options, Program, Sink, Source, WarningKind, Warnings, Word};
 
 /// A block that was executed.
 #[derive(Clone, Copy, Debug)]

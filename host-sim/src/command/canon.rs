@@ -1,5 +1,7 @@
 //! `truepath canon`: what a program does, move by move.
 
+mod kept;
+
 use std::path::PathBuf;
 
 use clap::Args;
@@ -83,8 +85,8 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
         }
         None => {
             // A program that is refused prints nothing.
-            let mut text = Vec::new();
-            let summary = write_canon(&source, &parsed, &mut text)?.map_err(|e| Failure::Internal(e.to_string()))?;
+            let (written, text) = kept::text_of(|out| write_canon(&source, &parsed, out))?;
+            let summary = written?.map_err(|e| Failure::Internal(e.to_string()))?;
             print_data(&text)?;
             summary
         }

@@ -211,14 +211,6 @@ fn a_switched_off_block_is_skipped_on_request() {
 }
 
 #[test]
-fn the_mark_of_a_corrected_program_is_reported_with_the_check_sum() {
-    let (contour, _) = read("%\n(TRUEPATH CORRECTED)\nG21 G0 X0 Y0 Z0\nG1 X1 F9\nM2\n%");
-    assert!(contour.summary.already_corrected);
-    let (other, _) = read("%\n(TRUEPATH corrected)\nG21 G0 X0 Y0 Z0\nG1 X1 F9\nM2\n%");
-    assert_ne!(contour.summary.crc, other.summary.crc);
-}
-
-#[test]
 fn the_contour_may_fill_the_buffer_but_not_exceed_it() {
     let mut buffer = [empty_block(); 3];
     assert!(

@@ -31,7 +31,14 @@ pub(super) struct Calls<'a, W> {
 impl<'a, W: Write> Calls<'a, W> {
     /// With the calls by which the reference begins.
     pub(super) fn new(options: &'a CanonOptions, out: W) -> Self {
-        let mut calls = Self { options, lines: Lines::new(out), at: [0; 3], places: Places::new(MILLION), coolant: [false; 2], work_offset: 1 };
+        let mut calls = Self {
+            options,
+            lines: Lines::new(out),
+            at: [0; 3],
+            places: Places::new(MILLION),
+            coolant: [false; 2],
+            work_offset: 1,
+        };
         calls.begin();
         calls
     }

@@ -144,7 +144,9 @@ impl<W: Write> Lines<W> {
         self.end = Some(start);
         let room = self.text.get_mut(start..).and_then(|rest| rest.first_chunk_mut());
         let written = match (room, count, self.label.as_array()) {
-            (Some(line), Some(count), Some(label)) if turned == [0; 3] => write_move(line, count, label, name, arguments),
+            (Some(line), Some(count), Some(label)) if turned == [0; 3] => {
+                write_move(line, count, label, name, arguments)
+            }
             _ => None,
         };
         let Some(length) = written else { return self.call_long_move(name, arguments, unit, turned) };
