@@ -140,7 +140,7 @@ impl<'a> Iterator for Lines<'a> {
     #[inline(never)]
     fn next(&mut self) -> Option<Line<'a>> {
         let rest = self.program.get(self.at..).filter(|r| !r.is_empty())?;
-        let len = memchr::memchr(self.end, rest).unwrap_or(rest.len());
+        let len = length_to(self.end, rest);
         let mut text = rest.get(..len)?;
         while let [before @ .., b'\r'] = text {
             text = before;
@@ -150,6 +150,27 @@ impl<'a> Iterator for Lines<'a> {
         self.at = self.at.saturating_add(len).saturating_add(1);
         Some(line)
     }
+}
+
+/// Bytes up to the next `end`, or all. Most lines end in their first words, which are looked at here; a search of its own costs more
+/// to begin.
+#[inline]
+fn length_to(end: u8, text: &[u8]) -> usize {
+    const EACH: u64 = 0x0101_0101_0101_0101;
+    const WORDS: usize = 5;
+    let sought = u64::from(end).wrapping_mul(EACH);
+    let mut passed = 0usize;
+    for word in text.as_chunks().0.iter().take(WORDS) {
+        let apart = u64::from_le_bytes(*word) ^ sought;
+        // The highest bit of the first byte that is `end`; those behind it may be wrong.
+        let found = apart.wrapping_sub(EACH) & !apart & (EACH * 0x80);
+        if found != 0 {
+            return passed.saturating_add(found.trailing_zeros() as usize / 8);
+        }
+        passed = passed.saturating_add(8);
+    }
+    let rest = text.get(passed..).unwrap_or(&[]);
+    memchr::memchr(end, rest).map_or(text.len(), |more| passed.saturating_add(more))
 }
 
 #[cfg(test)]
@@ -164,6 +185,16 @@ mod tests {
         assert_eq!(lines(b"\xEF\xBB\xBFa\r\nb\rc\n\nd"), expected);
         assert_eq!(lines(b"a\r\rb"), [(1, 0, &b"a"[..]), (2, 2, b""), (3, 3, b"b")]);
         assert_eq!(lines(b"a\r\r\nb\r"), [(1, 0, &b"a"[..]), (2, 4, b"b")]);
+    }
+
+    #[test]
+    fn the_end_of_a_line_is_found_wherever_it_stands() {
+        for at in 0..90usize {
+            let text: Vec<u8> =
+                (0..90u8).map(|n| if usize::from(n) >= at && n % 3 == 0 { b'\n' } else { 0x8A ^ (n % 2) }).collect();
+            assert_eq!(Some(length_to(b'\n', &text)), memchr::memchr(b'\n', &text).or(Some(90)));
+            assert_eq!(length_to(b'\r', text.get(..at).unwrap_or(&[])), at);
+        }
     }
 
     #[test]

@@ -237,10 +237,25 @@ impl<'p, 's, 'm> Execution<'p, 's, 'm> {
         if !self.compensation.is_idle() {
             return self.compensate(canon, span);
         }
+        self.show(&canon, span)
+    }
+
+    /// Gives the step of a move, which seldom has to wait.
+    #[inline]
+    fn emit_move(&mut self, canon: Canon, span: Span) -> Result<(), GcodeError> {
+        if self.corner.is_waiting() || !self.compensation.is_idle() {
+            self.emit(canon, span)
+        } else {
+            self.show(&canon, span)
+        }
+    }
+
+    /// Gives one step to the sink now.
+    fn show(&mut self, canon: &Canon, span: Span) -> Result<(), GcodeError> {
         let Some(sink) = self.sink.take() else {
             return Ok(());
         };
-        let event = Event { canon: &canon, source: self.source, modal: &self.modal, text: self.text, parameters: self };
+        let event = Event { canon, source: self.source, modal: &self.modal, text: self.text, parameters: self };
         let answer = sink(&event);
         self.sink = Some(sink);
         answer.map_err(|kind| self.error(kind, span))

@@ -168,7 +168,7 @@ impl Execution<'_, '_, '_> {
     /// Moves there without cutting.
     pub(super) fn traverse_to(&mut self, to: Axes, span: Span) -> Result<(), GcodeError> {
         let from = core::mem::replace(&mut self.at, to);
-        self.emit(Canon::Traverse { from, to }, span)
+        self.emit_move(Canon::Traverse { from, to }, span)
     }
 
     /// Moves there in a line, cutting.
@@ -178,6 +178,6 @@ impl Execution<'_, '_, '_> {
             self.warn(WarningKind::StartUnknown { axis }, span);
         }
         let from = core::mem::replace(&mut self.at, to);
-        self.emit(Canon::Feed { from, to }, span)
+        self.emit_move(Canon::Feed { from, to }, span)
     }
 }
