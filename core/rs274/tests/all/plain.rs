@@ -49,15 +49,21 @@ fn read(text: &str, options: Options<'_>) -> Read {
 
 /// The same text with a blank behind every letter and before every comment, but for what is inside of comments.
 fn apart(text: &str) -> String {
-    let mut inside = false;
+    let (mut depth, mut behind_semicolon) = (0u32, false);
     let mut apart = String::new();
     for c in text.chars() {
-        if c == '(' {
-            apart.push(' ');
+        match c {
+            '\n' => (depth, behind_semicolon) = (0, false),
+            ';' if depth == 0 => behind_semicolon = true,
+            '(' if !behind_semicolon => {
+                apart.push_str(if depth == 0 { " " } else { "" });
+                depth += 1;
+            }
+            ')' => depth = depth.saturating_sub(1),
+            _ => {}
         }
-        inside = (inside || c == '(') && !matches!(c, ')' | '\n');
         apart.push(c);
-        if c.is_ascii_alphabetic() && !inside {
+        if c.is_ascii_alphabetic() && depth == 0 && !behind_semicolon {
             apart.push(' ');
         }
     }
