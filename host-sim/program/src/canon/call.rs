@@ -11,10 +11,8 @@ use truepath_core::units::{Position, Real};
 
 use super::argument::Places;
 use super::lines::Lines;
+use super::number::MILLION;
 use super::options::CanonOptions;
-
-/// One degree, or millimetre, in the whole numbers of the core.
-pub(super) const MILLION: i64 = 1_000_000;
 
 /// Writes calls, and knows what they have set.
 pub(super) struct Calls<'a, W> {

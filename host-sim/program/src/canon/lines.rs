@@ -3,8 +3,7 @@
 use std::io::{self, Write};
 
 use super::argument::Argument;
-use super::call::MILLION;
-use super::number::{Count, SHORT, Short, push_ratio, push_real, push_whole};
+use super::number::{Count, MILLION, SHORT, Short, push_ratio, push_real, push_whole};
 
 /// Bytes gathered before they are written.
 const PIECE: usize = 1 << 16;
@@ -247,5 +246,37 @@ mod tests {
         let text = String::from_utf8(out).unwrap();
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!((lines[0], lines[9], lines[10]), ("    1 N..... A()", "   10 N10    B(1)", "   11 N1234567 C()"));
+    }
+
+    #[test]
+    fn a_move_is_written_whole_as_it_is_piece_by_piece() {
+        let (mut whole, mut pieces) = (Vec::new(), Vec::new());
+        let (mut one, mut other) = (Lines::new(&mut whole), Lines::new(&mut pieces));
+        let values = [0, -1, 50, 123_456_789, -999_999_949, 9_999_999_950, -9_999_999_951, 1 << 60];
+        for (unit, value) in [1_000_000, 25_400_000].into_iter().flat_map(|unit| values.map(|value| (unit, value))) {
+            let arguments = [
+                Argument::length(value, unit),
+                Argument::turns(value < 0, value >> 40),
+                Argument::length(-value, unit),
+            ];
+            for (label, turned) in [(None, [0; 3]), (Some(&b"1234567"[..]), [0; 3]), (Some(b"20"), [0, value, 0])] {
+                one.set_label(label);
+                one.call_move(b"M(", &arguments, unit, turned);
+                other.set_label(label);
+                other.count.next();
+                other.call_long_move(b"M(", &arguments, unit, turned);
+            }
+            one.remark("between");
+            other.remark("between");
+        }
+        (0..2000).for_each(|_| one.call_move(b"M(", &[Argument::length(5, 1_000_000)], 1_000_000, [0; 3]));
+        one.finish().expect("memory");
+        other.finish().expect("memory");
+        assert!(whole.starts_with(&pieces));
+        assert!(
+            whole.ends_with(b"\n 2064 N20    M(0.0000, 0.0000, 0.0000, 0.0000)\n"),
+            "{}",
+            String::from_utf8_lossy(&whole[whole.len() - 60..])
+        );
     }
 }

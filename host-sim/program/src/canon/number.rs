@@ -5,6 +5,9 @@
 
 use std::io::Write;
 
+/// One degree, or millimetre, in the whole numbers of the core.
+pub(super) const MILLION: i64 = 1_000_000;
+
 /// What stands between values.
 const SEPARATOR: &[u8; 2] = b", ";
 
