@@ -1,6 +1,8 @@
 //! From a measured pass to its correction: the steps of [`truepath_core::job`], with what lies between them kept for the
 //! reports.
 
+use std::sync::Arc;
+
 use truepath_core::correct::{
     Band, Damped, Design, DesignStep, DesignWorkspace, Guarded, Law, Node, Predicted, Profile, Scratch, Update,
     WallReader, add_residual, commanded, guarded_design, guarded_given,
@@ -15,6 +17,7 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
 use crate::discrepancy::{Along, PartCut, plain};
+use crate::force_tables::force_table;
 use crate::identification::{Found, asked};
 use crate::misfit::refuse_misfit;
 use crate::parallel_walls::{ParallelWalls, run};
@@ -141,8 +144,8 @@ impl Identification {
         &self.core.fit
     }
     /// The force table of the identified cutter.
-    pub fn table(&self) -> ForceTable {
-        self.core.table()
+    pub fn table(&self) -> Arc<ForceTable> {
+        force_table(&self.core.fit.parameters)
     }
     /// The identified machine on a path.
     pub const fn machine<'a>(&self, path: &'a Path<'a>, table: &'a ForceTable) -> Loop<'a> {

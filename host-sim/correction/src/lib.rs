@@ -31,6 +31,7 @@ pub mod feeds;
 pub mod fillet;
 pub mod first_pass;
 pub mod floor;
+pub mod force_tables;
 pub mod further;
 pub mod guard;
 pub mod identification;

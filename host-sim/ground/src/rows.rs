@@ -36,15 +36,24 @@ impl Weighable {
 
     /// Adds every row times its weight to a row as long as they, one after the other.
     pub fn add(&self, to: &mut [f64], weights: &[f64]) {
-        for (to, blocks) in to.chunks_mut(BLOCK).zip(self.blocks.chunks(self.rows.max(1))) {
-            let mut sums = [0.0; BLOCK];
-            sums.iter_mut().zip(&*to).for_each(|(sum, number)| *sum = *number);
-            for (block, by) in blocks.iter().zip(weights) {
-                sums.iter_mut().zip(block).for_each(|(sum, number)| *sum += number * by);
-            }
-            to.iter_mut().zip(sums).for_each(|(to, sum)| *to = sum);
+        let mut places = self.blocks.chunks(self.rows.max(1));
+        let (whole, end) = to.as_chunks_mut();
+        for (to, blocks) in whole.iter_mut().zip(&mut places) {
+            *to = added(*to, blocks, weights);
+        }
+        if let Some(blocks) = places.next() {
+            let mut last = [0.0; BLOCK];
+            last.iter_mut().zip(&*end).for_each(|(slot, number)| *slot = *number);
+            end.iter_mut().zip(added(last, blocks, weights)).for_each(|(to, sum)| *to = sum);
         }
     }
+}
+
+fn added(mut sums: [f64; BLOCK], blocks: &[[f64; BLOCK]], weights: &[f64]) -> [f64; BLOCK] {
+    for (block, by) in blocks.iter().zip(weights) {
+        sums.iter_mut().zip(block).for_each(|(sum, number)| *sum += number * by);
+    }
+    sums
 }
 
 /// Adds one number to all of a row.
@@ -84,9 +93,19 @@ pub fn magnitudes(row: &[f64], to: &mut Vec<f64>) {
 
 /// 95 of 100 of some magnitudes are at most this; zero of none. Their order is lost.
 pub fn p95(magnitudes: &mut [f64]) -> f64 {
+    let [p95, _] = p95_and_largest(magnitudes);
+    p95
+}
+
+/// What 95 of 100 of some magnitudes are at most, and the largest; zeros of none. Their order is lost.
+pub fn p95_and_largest(magnitudes: &mut [f64]) -> [f64; 2] {
+    if magnitudes.is_empty() {
+        return [0.0; 2];
+    }
+    let at = (magnitudes.len() * 95 / 100).min(magnitudes.len() - 1);
     // The bits of numbers that are not negative ascend as they do.
-    let at = (magnitudes.len() * 95 / 100).min(magnitudes.len().saturating_sub(1));
-    if magnitudes.is_empty() { 0.0 } else { *magnitudes.select_nth_unstable_by_key(at, |m| m.to_bits()).1 }
+    let (_, p95, larger) = magnitudes.select_nth_unstable_by_key(at, |m| m.to_bits());
+    [*p95, p95.max(largest(larger))]
 }
 
 #[cfg(test)]
@@ -108,8 +127,9 @@ mod tests {
         assert_eq!((largest(&row), largest_mean(&row, 2)), (3.0, 2.5));
         let mut all = Vec::new();
         magnitudes(&row, &mut all);
-        assert_eq!((p95(&mut all), p95(&mut []), largest(&[]), largest_mean(&[], 3)), (3.0, 0.0, 0.0, 0.0));
+        assert_eq!((p95_and_largest(&mut all), p95_and_largest(&mut [])), ([3.0; 2], [0.0; 2]));
+        assert_eq!((largest(&[]), largest_mean(&[], 3)), (0.0, 0.0));
         let mut hundred: Vec<f64> = (0..100).rev().map(f64::from).collect();
-        assert_eq!(p95(&mut hundred), 95.0);
+        assert_eq!((p95_and_largest(&mut hundred), p95(&mut hundred)), ([95.0, 99.0], 95.0));
     }
 }

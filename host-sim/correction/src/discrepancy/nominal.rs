@@ -4,13 +4,14 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 use truepath_core::correct::Band;
-use truepath_core::cut::{ForceTable, Heights, Loop, Path, Sample, State};
+use truepath_core::cut::{Heights, Loop, Path, Sample, State};
 use truepath_core::identify::{COUNT, Parameter, Parameters};
 use truepath_core::job;
 use truepath_core::units::{Offset, Real};
 use truepath_ground::units::{float, mm};
 
 use super::feature::Engagement;
+use crate::force_tables::force_table;
 
 /// Step of the difference quotients, prior standard deviations.
 const STEP: Real = Real::ratio(1, 32);
@@ -113,7 +114,7 @@ pub(super) fn moved_stock(path: &Path) -> [(Vec<Sample>, Offset); 2] {
 
 /// The cutter at its nominal place at samples: how far it is engaged there, no machine changes.
 fn engaged(path: &Path, core: &job::Identified, samples: Range<usize>) -> Vec<State> {
-    let table = core.table();
+    let table = force_table(&core.fit.parameters);
     let machine = core.machine(path, &table);
     samples.into_par_iter().map(|index| machine.nominal(index, Real::ZERO)).collect()
 }
@@ -135,7 +136,7 @@ fn every_deflection(path: &Path, core: &job::Identified) -> Vec<Offset> {
 
 /// Does something with a machine that has such parameters.
 fn with_machine<T>(path: &Path, parameters: &Parameters, with: impl FnOnce(&Loop) -> T) -> T {
-    let table = ForceTable::new(parameters.coefficients.size_exponent);
+    let table = force_table(parameters);
     with(&parameters.machine(path, &table))
 }
 

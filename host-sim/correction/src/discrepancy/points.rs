@@ -11,6 +11,7 @@ use super::feature::{Engagement, Feature, Sensitivity};
 use super::kernel::{Extent, Kernel, Pair};
 use super::nominal::moved_stock;
 use super::pairs::Pairs;
+use crate::force_tables::force_table;
 
 /// Points that are looked at one by one; of more the mean over the heights of a place is.
 const MOST_POINTS: usize = 120;
@@ -113,7 +114,7 @@ impl Points {
     pub fn of(cuts: &[CutPoints<'_>], core: &job::Identified) -> Self {
         let theta: [f64; COUNT] = core.fit.theta.map(float);
         let level = float(core.prior.sigma[0]).max(1e-9);
-        let table = core.table();
+        let table = force_table(&core.fit.parameters);
         let many = cuts.iter().map(|cut| cut.observations.len()).sum::<usize>() > MOST_POINTS;
         let (mut rows, mut extents): (Vec<Row>, Vec<Option<Extent>>) = (Vec::new(), Vec::new());
         let paths: Vec<Path> = cuts.iter().map(|cut| cut.path.with_law(core.law)).collect();
@@ -205,7 +206,7 @@ pub fn stock_sensitivities(path: &Path, cut: &CutPoints<'_>, core: &job::Identif
         let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
         let mut points = cut.observations.to_vec();
         let asked = |i: usize| commanded(path, cut.nodes, i);
-        predict(path, &core.table(), &parameters, asked, &mut points, &mut workspace);
+        predict(path, &force_table(&parameters), &parameters, asked, &mut points, &mut workspace);
         points
     };
     let [more, less] = moved_stock(path).map(|(mut buffer, shift)| {

@@ -19,6 +19,7 @@ use super::average::{Along, ByLoad, Discrepancy, ln_probability};
 use super::nominal::with_stock;
 use super::pairs::Pairs;
 use super::points::{CutPoints, Own, Points};
+use crate::force_tables::force_table;
 use crate::identification::{Found, Points as Asked, found, under_both};
 use crate::plausible::is_possible;
 
@@ -445,7 +446,7 @@ fn predictions(found: &Found, cuts: &[PartCut<'_>]) -> Vec<Offset> {
         let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
         let mut points = cut.observations.to_vec();
         let asked = |i: usize| commanded(&path, cut.nodes, i);
-        predict(&path, &core.table(), &core.fit.parameters, asked, &mut points, &mut workspace);
+        predict(&path, &force_table(&core.fit.parameters), &core.fit.parameters, asked, &mut points, &mut workspace);
         points
     };
     let mut points: Vec<Observation> = cuts.iter().flat_map(of_cut).collect();

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use truepath_core::correct::commanded;
-use truepath_core::cut::{ForceTable, Path, State};
+use truepath_core::cut::{Path, State};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{Observation, Parameters, PredictionWorkspace, predict};
 use truepath_core::units::Real;
@@ -14,6 +14,7 @@ use truepath_ground::units::{float, mm};
 
 use super::joint::{Joint, PartPoints};
 use crate::discrepancy::{CutPoints, Engagement, Own, Sensitivity, stock_sensitivities};
+use crate::force_tables::force_table;
 
 /// Which places are held out.
 #[derive(Clone, Debug)]
@@ -148,7 +149,7 @@ fn loads(path: &Path, part: &PartPoints, model: &Joint, points: &[Observation]) 
 fn predict_points(path: &Path, part: &PartPoints, model: &Joint, parameters: &Parameters, points: &mut [Observation]) {
     let path = path.with_law(model.core.law);
     let room = path.working().len() + 1;
-    let table = ForceTable::new(parameters.coefficients.size_exponent);
+    let table = force_table(parameters);
     let (mut states, mut displacements) = (vec![State::REST; room], vec![Vector::ZERO; room]);
     let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
     predict(&path, &table, parameters, |i| commanded(&path, &part.nodes, i), points, &mut workspace);

@@ -12,6 +12,7 @@ use truepath_ground::units::{float, mm, real};
 
 use super::score::{expected_mm, loss, prior_cost, residual_mm, weight};
 use super::solve::solved;
+use crate::force_tables::force_table;
 
 /// Steps at most.
 const STEPS: usize = 10;
@@ -38,7 +39,7 @@ impl Fitting<'_> {
         let needed = self.path.working().len() + 1;
         let (mut states, mut displacements) = (vec![State::REST; needed], vec![Vector::ZERO; needed]);
         let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
-        let table = ForceTable::new(self.prior.mean.coefficients.size_exponent);
+        let table = force_table(&self.prior.mean);
         let sigma = self.prior.sigma.map(float);
         let mut theta = [0.0; COUNT];
         let mut cost = self.cost(&theta, &table, &mut workspace);

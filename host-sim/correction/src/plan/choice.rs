@@ -7,7 +7,7 @@ use truepath_core::cut::{ForceTable, Path, Sample};
 use truepath_core::identify::{Parameters, neighbours};
 use truepath_core::job::{self, Identified};
 use truepath_core::process::ImmersionGrid;
-use truepath_core::units::{Offset, Real};
+use truepath_core::units::Offset;
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::length::{Remark, Unit};
 use truepath_ground::units::{float, mm};
@@ -24,6 +24,7 @@ use super::search::{Candidate, search};
 use super::times::Times;
 use crate::correction::{Identification, MeasuredCut, identify_together};
 use crate::feeds::written_feeds_count;
+use crate::force_tables::force_table;
 use crate::planned::{self, PlannedPass};
 use crate::surface::draws::Uncertain;
 use crate::surface::expected::Surface;
@@ -382,7 +383,7 @@ impl<'a> Planner<'a> {
         progress: &(dyn Fn(f64) + Sync),
     ) -> Vec<Choice> {
         let others = self.others_than(mounted, coarse);
-        let tables: Vec<ForceTable> = others.iter().map(|other| ForceTable::new(other.exponent())).collect();
+        let tables: Vec<_> = others.iter().map(|other| force_table(&other.parameters)).collect();
         let machines: Vec<Bench> = others
             .iter()
             .zip(&tables)
@@ -473,12 +474,6 @@ enum Why {
     Lacking,
     /// A cutter that does not bend.
     Unbent,
-}
-
-impl Other {
-    const fn exponent(&self) -> Real {
-        self.parameters.coefficients.size_exponent
-    }
 }
 
 /// The first cuts of a process, as all machines have made them.

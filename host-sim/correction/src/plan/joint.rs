@@ -18,7 +18,7 @@
 //! explain lose their weight. The walls are linearised anew about what was found, until that stays.
 
 use rayon::prelude::*;
-use truepath_core::cut::{ForceTable, Loop, Path, WallLaw};
+use truepath_core::cut::{Loop, Path, WallLaw};
 use truepath_core::identify::{COUNT, Fit, Observation, Parameter, Parameters, Prior, prior_weights};
 use truepath_core::job;
 use truepath_core::process::{ImmersionGrid, Mill, Slices};
@@ -29,6 +29,7 @@ use truepath_ground::units::{float, mm, nm, real};
 
 use super::bench::{Bench, CutPass};
 use super::field::{Engagement, Field, Kernel, Place};
+use crate::force_tables::force_table;
 use crate::surface::unmodelled::lack;
 use crate::surface::wall::at_height;
 
@@ -172,7 +173,7 @@ impl Joint {
     /// What the model with the field misses at the points of a planned part, root mean square, mm; points of something else
     /// aside. `is_newest`: the datum is that of the part.
     pub fn missed(&self, walls: &[Wall<'_>], part: &[CutPart], is_newest: bool) -> f64 {
-        let table = self.core.table();
+        let table = force_table(&self.core.fit.parameters);
         let machines: Vec<Loop> = walls.iter().map(|wall| self.core.machine(wall.path, &table)).collect();
         let engagements = engagements(&machines);
         let Parameters { datum, .. } = self.core.fit.parameters;
@@ -231,7 +232,7 @@ fn engagements<'p>(machines: &'p [Loop<'p>]) -> Vec<Engagement<'p>> {
 
 /// The walls that a machine leaves on all parts, at their points, mm; `None` where no wall is.
 pub fn predicted(walls: &[Wall<'_>], parameters: &Parameters, parts: &[CutPart]) -> Vec<Vec<Option<f64>>> {
-    let table = ForceTable::new(parameters.coefficients.size_exponent);
+    let table = force_table(parameters);
     let machines = walls.iter().map(|wall| (wall, parameters.machine(wall.path, &table)));
     let benches: Vec<Bench> =
         machines.map(|(wall, machine)| Bench::new(Mill::new(machine, wall.grid, wall.slices), wall.slices)).collect();
@@ -274,7 +275,7 @@ fn rows(
     machines.extend(asked.iter().flat_map(|k| [moved(*k, STEP), moved(*k, -STEP)]));
     let left: Vec<Vec<Vec<Option<f64>>>> =
         machines.par_iter().map(|parameters| predicted(walls, parameters, parts)).collect();
-    let table = ForceTable::new(machines[0].coefficients.size_exponent);
+    let table = force_table(&machines[0]);
     let middle: Vec<Loop> = walls.iter().map(|wall| machines[0].machine(wall.path, &table)).collect();
     let engagements = engagements(&middle);
     let total: usize = parts.iter().map(|part| part.points.len()).sum();

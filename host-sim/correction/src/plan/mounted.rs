@@ -4,6 +4,8 @@
 //! difference of the radii; chip and engagement follow from its teeth, helix and radius, the stiffness from what the job says of it.
 //! What the points cannot tell of it stands with the unknown: its size and how stiff it is.
 
+use std::sync::Arc;
+
 use std::borrow::Cow;
 
 use truepath_core::cut::{Cantilever, ForceTable, Path, Sample, WallLaw};
@@ -101,7 +103,7 @@ impl<'a> Mounted<'a> {
         &self.known
     }
     /// The force table of the identified material.
-    pub fn table(&self) -> ForceTable {
+    pub fn table(&self) -> Arc<ForceTable> {
         self.known.table()
     }
 

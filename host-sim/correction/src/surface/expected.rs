@@ -69,7 +69,8 @@ impl Surface {
         let mut magnitudes = Vec::new();
         let [profile, p95, mean] = uncertain.draws(|wall| {
             rows::magnitudes(wall, &mut magnitudes);
-            [rows::largest(wall), rows::p95(&mut magnitudes), rows::largest_mean(wall, uncertain.heights)]
+            let [p95, largest] = rows::p95_and_largest(&mut magnitudes);
+            [largest, p95, rows::largest_mean(wall, uncertain.heights)]
         });
         let (within, over_height) = (p95.predicted(), mean.predicted());
         let surface = Self {

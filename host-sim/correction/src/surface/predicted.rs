@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 use truepath_core::correct::{Band, HEIGHTS, Node, commanded};
-use truepath_core::cut::{ForceTable, Loop, Path, State, WallError};
+use truepath_core::cut::{Loop, Path, State, WallError};
 use truepath_core::identify::{Fit, Parameter, Parameters, Prior, neighbours, prior_weights};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::rows::largest;
@@ -17,6 +17,7 @@ use super::unmodelled::{SOFTER, lack, unbent, unmodelled};
 use super::wall::{WallFigures, judged};
 use crate::correction::Identification;
 use crate::discrepancy::Along;
+use crate::force_tables::force_table;
 use crate::parallel_walls::{CutWalls, run, walls_at};
 
 /// Places whose walls are drawn: as many, as long as they are no farther apart than a part of the radius, and at most.
@@ -60,7 +61,7 @@ impl Surface {
         let machines: Vec<_> = noise.chain(tail).chain(lacking).chain([(Origin::Unbent, unbent(found), 1.0)]).collect();
         let cut = |(origin, other, share): &(Origin, Parameters, f64)| {
             let exponent = other.coefficients.size_exponent;
-            let own = (exponent != machine.table.size_exponent()).then(|| Box::new(ForceTable::new(exponent)));
+            let own = (exponent != machine.table.size_exponent()).then(|| force_table(other));
             let other = other.machine(path, own.as_deref().unwrap_or(machine.table));
             // Some columns move nothing but the datum of the part that was probed.
             let moves = !other.cuts_as(machine);

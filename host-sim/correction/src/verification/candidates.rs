@@ -12,7 +12,7 @@
 use std::collections::HashMap;
 use std::ops::RangeInclusive;
 
-use truepath_core::cut::{ForceTable, Path, Sample, State};
+use truepath_core::cut::{Path, Sample, State};
 use truepath_core::geometry::{Point, Shape};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::units::{float, mm};
@@ -21,6 +21,7 @@ use truepath_job::pass::Pass;
 use super::approach::{Ball, Xy, along, distance};
 use super::estimate::Estimate;
 use super::leads::milled_once;
+use crate::force_tables::force_table;
 
 /// Why a place is not touched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
@@ -194,7 +195,7 @@ pub(super) fn before_the_pass(pass: &Pass, path: &Path, ball: Ball, stock: Stock
 /// The states of the elastic loop along the path, at the estimate of machine and material.
 fn states(path: &Path, estimate: &Estimate) -> Vec<State> {
     let parameters = estimate.parameters();
-    let table = ForceTable::new(parameters.coefficients.size_exponent);
+    let table = force_table(&parameters);
     let machine = parameters.machine(path, &table);
     let working = path.working();
     let mut states = vec![State::REST; working.len()];

@@ -7,7 +7,7 @@
 //! ([`truepath_core::process`]), and a smooth share of the shape over the height that a model may miss. The
 //! size of cutter and ball and the datum act on the readings of a place alike and are told from the wall by their differences.
 
-use truepath_core::cut::{ForceTable, Path, WallLaw};
+use truepath_core::cut::{Path, WallLaw};
 use truepath_core::identify::{COUNT, Parameter, Parameters};
 use truepath_core::process::{ImmersionGrid, Mill, Slices};
 use truepath_core::units::{Offset, Real};
@@ -15,6 +15,7 @@ use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::{float, mm};
 use truepath_job::pass::Pass;
 
+use crate::force_tables::force_table;
 use crate::plan::bench::Bench;
 use crate::plan::mounted::{Resolution, path};
 
@@ -224,7 +225,7 @@ fn columns(pass: &Pass, path: &Path, slices: Slices) -> (Vec<f64>, Columns) {
     let prior = pass.core.prior(path.setup().law);
     let grid = ImmersionGrid::new();
     let walls = |parameters: &Parameters| -> Vec<Vec<f64>> {
-        let table = ForceTable::new(parameters.coefficients.size_exponent);
+        let table = force_table(parameters);
         let machine = parameters.machine(path, &table);
         let left = Bench::new(Mill::new(machine, &grid, slices), slices).as_programmed().left;
         let column =

@@ -14,6 +14,7 @@ use super::candidates::Site;
 use super::covariance::{Row, Thing};
 use super::estimate::{Estimate, of_measurement};
 use super::heights::Height;
+use crate::force_tables::force_table;
 
 /// What the touches of one place would tell.
 #[derive(Clone, Debug)]
@@ -103,7 +104,7 @@ pub(super) fn rows(
         touches.iter().map(|o| o.predicted).collect::<Vec<_>>()
     };
     let parameters = estimate.parameters();
-    let table = ForceTable::new(parameters.coefficients.size_exponent);
+    let table = force_table(&parameters);
     let expected = readings(touches, &parameters, &table);
     for (touch, expected) in touches.iter_mut().zip(&expected) {
         touch.error = *expected;
@@ -124,9 +125,7 @@ pub(super) fn rows(
         }
         let mut at = |by: Real| {
             let moved = estimate.displaced(k, by);
-            let exponent = moved.coefficients.size_exponent;
-            let other = (exponent != table.size_exponent()).then(|| ForceTable::new(exponent));
-            readings(touches, &moved, other.as_ref().unwrap_or(&table))
+            readings(touches, &moved, &force_table(&moved))
         };
         let (above, below) = (at(DIFFERENCE), at(-DIFFERENCE));
         for (((row, a), b), deviation) in rows.iter_mut().zip(&above).zip(&below).zip(&deviations) {

@@ -5,7 +5,7 @@
 //! to the corrected wall; with the covariance of the unknowns it gives its standard deviation there.
 
 use truepath_core::correct::{Design, Node, Profile, profile};
-use truepath_core::cut::{ForceTable, Path, State};
+use truepath_core::cut::{Path, State};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{COUNT, Parameter, Parameters};
 use truepath_core::units::{Offset, Real};
@@ -14,6 +14,7 @@ use truepath_ground::units::{float, mm};
 use super::covariance::Row;
 use super::estimate::{Estimate, of_measurement};
 use crate::correction::Identification;
+use crate::force_tables::force_table;
 
 /// Step of the difference quotients, in standard deviations of what the job states.
 const DIFFERENCE: Real = Real::ratio(1, 8);
@@ -63,7 +64,7 @@ impl WallSensitivity {
 
 /// The target quantity beside every sample when a machine of these parameters cuts with the correction.
 fn wall(path: &Path, estimate: &Estimate, parameters: &Parameters, wanted: &Design) -> Vec<Offset> {
-    let table = ForceTable::new(parameters.coefficients.size_exponent);
+    let table = force_table(parameters);
     let machine = parameters.machine(path, &table);
     let working = path.working();
     let mut states = vec![State::REST; working.len()];
