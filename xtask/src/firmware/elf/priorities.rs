@@ -135,7 +135,7 @@ pub const INDIRECT: &[Indirect] = &[
     (DESIGN[1], TOLD),
     ("uncertainty::spread", &["guard::margins::{closure#", "shrinkage::damp::{closure#"]),
     // A device reads a program for its contour alone.
-    ("execute::Execution>::emit_on", STEPS),
+    ("execute::Execution>::show", STEPS),
     ("execute::Execution>::give", STEPS),
     // A device has no library of other programs.
     ("flow::program::Program>::file", &[]),
