@@ -4,7 +4,7 @@
 //! * G41 or G42 takes its offset along one move and G40 gives it up along one; what lies before and behind is no wall;
 //! * a run holds a closed loop, or one that runs a little over its own start, with a few blocks before and behind it (some
 //!   CAM systems write arcs as short lines), and the loop is more than half of it;
-//! * an open run begins or ends with an arc that turns away from the wall, tangent to the rest, no wider than two
+//! * an open run (not one that misses its start by what its numbers are rounded by) begins or ends with an arc that turns away from the wall, tangent to the rest, no wider than two
 //!   diameters: what CAM systems write. With a straight move outside it only where both ends are alike;
 //! * an open run begins or ends with a straight move no longer than the cutter's radius, at 20 degrees or more to the
 //!   wall: the wall of such a leg would lie in its own corner. No longer than two diameters where it is neither along
@@ -34,7 +34,7 @@ pub(super) fn without_leads(blocks: &[Block], run: &Candidate, wall: Option<Side
     let within = blocks.get(offset.clone()).unwrap_or_default();
     let found = match (inner_loop(within, closed).or_else(|| inner_loop(within, laps)), wall) {
         (Some(found), _) => found,
-        (None, Some(wall)) if !told && !closed(within) => open(within, wall, diameter),
+        (None, Some(wall)) if !told && !closed(within) && !nearly_closed(within) => open(within, wall, diameter),
         _ => return offset,
     };
     // A loop may be closed by the way back alone.
@@ -175,6 +175,16 @@ pub(super) fn closed(blocks: &[Block]) -> bool {
         (Some(first), Some(last)) => first.curve.start() == last.curve.end(),
         _ => false,
     }
+}
+
+/// Whether blocks end beside their start and as they begin, as rounded numbers have it: a corner on either side of such a place looks
+/// like a lead, and is none.
+fn nearly_closed(blocks: &[Block]) -> bool {
+    const BESIDE: Offset = Offset::from_um(10);
+    blocks.first().zip(blocks.last()).is_some_and(|(first, last)| {
+        let (start, end) = (&first.curve, &last.curve);
+        end.end().distance(start.start()) <= BESIDE && end.end_heading().dot(start.start_heading()) >= TANGENT
+    })
 }
 
 /// Their length together.

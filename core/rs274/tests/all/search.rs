@@ -301,6 +301,22 @@ fn leads_without_cutter_compensation_are_no_wall() {
 }
 
 #[test]
+fn a_loop_that_misses_its_start_by_a_rounded_digit_is_whole() {
+    // A pocket from the middle of a wall: the first and the last corner look like arcs of leads.
+    let pocket = |x: &str, y: &str| {
+        only(&format!(
+            "G0 Y-20\nG1 X8 F500\nG3 X13 Y-15 I0 J5\nG1 Y15\nG3 X8 Y20 I-5 J0\nG1 X-8\nG3 X-13 Y15 I0 J-5\nG1 Y-15\n\
+             G3 X-8 Y{y} I5 J0\nG1 X{x} Y{y}"
+        ))
+    };
+    assert_eq!(pocket("0", "-20"), (6, 14, true));
+    assert_eq!(pocket("-0.0001", "-20"), (6, 14, false));
+    assert_eq!(pocket("0.004", "-20.003"), (6, 14, false));
+    // Farther off it is no loop, and the ends are leads.
+    assert_eq!(pocket("-0.1", "-20"), (8, 12, false));
+}
+
+#[test]
 fn a_lap_that_runs_over_its_own_start_is_one_contour_without_its_leads() {
     let pocket = "G1 X40\nG1 Y30\nG1 X-40\nG1 Y-20";
     // From line 6: 2 mm milled twice, leads of quarter circles; the same without overlap.
