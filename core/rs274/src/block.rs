@@ -171,7 +171,7 @@ impl<'s> BlockWords<'s> {
 }
 
 /// The place of a letter in a set: `@` and the capital letters, `^`, and `r` and `c` for the corner words.
-const fn bit(letter: u8) -> u64 {
+pub(super) const fn bit(letter: u8) -> u64 {
     1u64.wrapping_shl((letter as u32).wrapping_sub(64))
 }
 

@@ -60,11 +60,6 @@ impl Identified {
         }
     }
 
-    /// The force table of the identified cutter.
-    pub fn table(&self) -> ForceTable {
-        ForceTable::new(self.fit.parameters.coefficients.size_exponent)
-    }
-
     /// The identified machine on a path.
     pub const fn machine<'a>(&self, path: &'a Path<'a>, table: &'a ForceTable) -> Loop<'a> {
         self.fit.parameters.machine(path, table)

@@ -20,7 +20,7 @@ pub fn force_table(parameters: &Parameters) -> Arc<ForceTable> {
 struct Latest(Mutex<VecDeque<Arc<ForceTable>>>);
 
 impl Latest {
-    /// Tables kept, 16 KiB each: some four times those that a job asks for.
+    /// Tables kept, 16 KiB each.
     const KEPT: usize = 64;
 
     fn of(&self, size_exponent: Real) -> Arc<ForceTable> {

@@ -16,6 +16,7 @@ use truepath_job::pass::{Pass, PathBuffer};
 use truepath_job::roughed_stock::Pushed;
 
 use crate::discrepancy::{PartCut, plain};
+use crate::force_tables::force_table;
 use crate::identification::asked;
 use crate::surface::predicted::{COUNT, errors};
 
@@ -69,7 +70,7 @@ fn of_runs(pass: &Pass, machine: &Identified) -> Result<Vec<Pushed>, Failure> {
 
 /// What a run leaves more on its wall than its path says, mean over the height, mm, at samples of its path.
 fn along(path: &Path, machine: &Identified) -> Vec<(usize, f64)> {
-    let table = machine.table();
+    let table = force_table(&machine.fit.parameters);
     let cut = machine.machine(path, &table);
     let spacing = (mm(path.length()) / path.count().max(1) as f64).max(1e-3);
     let every = ((APART_MM / spacing) as usize).max(1);

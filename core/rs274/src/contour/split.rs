@@ -4,8 +4,9 @@
 //! * G41 or G42 takes its offset along one move and G40 gives it up along one; what lies before and behind is no wall;
 //! * a run holds a closed loop, or one that runs a little over its own start, with a few blocks before and behind it (some
 //!   CAM systems write arcs as short lines), and the loop is more than half of it;
-//! * an open run (not one that misses its start by what its numbers are rounded by) begins or ends with an arc that turns away from the wall, tangent to the rest, no wider than two
-//!   diameters: what CAM systems write. With a straight move outside it only where both ends are alike;
+//! * an open run (not one that misses its start by what its numbers are rounded by) begins or ends with an arc that turns
+//!   away from the wall, tangent to the rest, no wider than two diameters: what CAM systems write. With a straight move
+//!   outside it only where both ends are alike;
 //! * an open run begins or ends with a straight move no longer than the cutter's radius, at 20 degrees or more to the
 //!   wall: the wall of such a leg would lie in its own corner. No longer than two diameters where it is neither along
 //!   nor across;

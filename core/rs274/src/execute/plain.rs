@@ -3,6 +3,7 @@
 //! The steps are those of [`execute`](Execution::execute) that such a block comes to, in the same order; all others are left out
 //! without a look at each. Where the words of a block have more to say than where it leads (a warning, an error), it takes the long way.
 
+use super::super::block::bit;
 use super::super::flow::Sentence;
 use super::super::{Axes, Canon, GcodeError, Motion, Number, Plane, Word};
 use super::Execution;
@@ -18,12 +19,7 @@ struct Said<'w> {
     feed: Option<&'w Word>,
     code: Option<&'w Word>,
     /// The letters that stand here.
-    letters: u32,
-}
-
-/// A letter in a set of capital letters.
-const fn bit(letter: u8) -> u32 {
-    1u32.wrapping_shl(letter as u32)
+    letters: u64,
 }
 
 impl<'p> Execution<'p, '_, '_> {

@@ -126,7 +126,7 @@ pub(super) fn predicted(
     let parameters = Parameters { datum: Vector::ZERO, ..*parameters };
     predict_points(path, part, model, &parameters, points);
     let path = path.with_law(model.core.law);
-    let (working, table) = (path.working(), model.core.table());
+    let (working, table) = (path.working(), force_table(&model.core.fit.parameters));
     let mut states = vec![State::REST; working.len()];
     parameters.machine(&path, &table).run(working.start, &mut states, |i| commanded(&path, &part.nodes, i));
     states

@@ -17,6 +17,7 @@ use truepath_job::pass::Pass;
 use super::joint::{Joint, PartPoints};
 use crate::correction::walls;
 use crate::discrepancy::Own;
+use crate::force_tables::force_table;
 
 /// Error of the target quantity over some places.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
@@ -66,7 +67,7 @@ impl Monitor {
     /// Of the parts of a joint fit; the last one is judged.
     pub fn of(pass: &Pass, path: &Path, parts: &[PartPoints], joint: &Joint) -> Self {
         let path = path.with_law(joint.core.law);
-        let table = joint.core.table();
+        let table = force_table(&joint.core.fit.parameters);
         let wanted = pass.job.numbers.design(Law::Model);
         let wall = |(part, own): (&PartPoints, &Own)| {
             let parameters = joint.core.fit.parameters.with_force(real(own.level));

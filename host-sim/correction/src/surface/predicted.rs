@@ -60,9 +60,8 @@ impl Surface {
         let lacking = others.map(|(_, other)| (Origin::Model, other, 1.0));
         let machines: Vec<_> = noise.chain(tail).chain(lacking).chain([(Origin::Unbent, unbent(found), 1.0)]).collect();
         let cut = |(origin, other, share): &(Origin, Parameters, f64)| {
-            let exponent = other.coefficients.size_exponent;
-            let own = (exponent != machine.table.size_exponent()).then(|| force_table(other));
-            let other = other.machine(path, own.as_deref().unwrap_or(machine.table));
+            let table = force_table(other);
+            let other = other.machine(path, &table);
             // Some columns move nothing but the datum of the part that was probed.
             let moves = !other.cuts_as(machine);
             let moved = moves.then(|| cut_walls.moved_by(&other))?;
